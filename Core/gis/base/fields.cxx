@@ -4,6 +4,7 @@
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
 #include "base/text/plainText.h"
+#include "base/text/quotedList.h"
 #include "gis/base/gdal.h"
 
 #include <cpl_csv.h>
@@ -31,12 +32,12 @@ Columns columnsOf(const OGRFeatureDefn& definition)
 
 std::string fieldList(const OGRFeatureDefn& definition)
 {
-  std::string list;
+  ColumnNames names;
   for (int i = 0; i < definition.GetFieldCount(); ++i)
   {
-    list += (i ? ", \"" : "\"") + std::string(definition.GetFieldDefn(i)->GetNameRef()) + "\"";
+    names.push_back(definition.GetFieldDefn(i)->GetNameRef());
   }
-  return list.empty() ? "none" : list;
+  return names.empty() ? "none" : quotedList(names);
 }
 
 namespace
@@ -163,8 +164,7 @@ void tellUnread(const OGRFeatureDefn& definition, const std::string& fileName,
   const ColumnNames& known, const ColumnNames& others, std::vector<std::string>& notes)
 {
   const Columns columns = columnsOf(definition);
-  std::string list;
-  int count = 0;
+  std::vector<std::string> unread;
   for (int i = 0; i < definition.GetFieldCount(); ++i)
   {
     const std::string written = definition.GetFieldDefn(i)->GetNameRef();
@@ -177,13 +177,14 @@ void tellUnread(const OGRFeatureDefn& definition, const std::string& fileName,
     if (!isRead(column) && !isRead(quantity.name) &&
       (alike || holds(kQuantities, quantity.name) || namesQuantity(quantity, known)))
     {
-      list += (count++ ? ", \"" : "\"") + written + "\"";
+      unread.push_back(written);
     }
   }
-  if (count > 0)
+  if (!unread.empty())
   {
     notes.push_back(fileName +
-      (count > 1 ? ": not read are its columns " : ": not read is its column ") + list + ".");
+      (unread.size() > 1 ? ": not read are its columns " : ": not read is its column ") +
+      quotedList(unread) + ".");
   }
 }
 

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
+#include "base/text/quotedList.h"
 #include "gis/base/fields.h"
 #include "gis/layers/drawing.h"
 
@@ -239,13 +240,9 @@ void LayerFile::choose()
   }
   if (layers.size() > 1 && hasFeatures(*layers.front()))
   {
-    std::string list;
-    for (OGRLayer* layer : layers)
-    {
-      list += (list.empty() ? "\"" : ", \"") + std::string(layer->GetName()) + "\"";
-    }
     throw DataError(wish_.fileName + ": has " + std::to_string(layers.size()) +
-      " layers that would do, " + list + "; say in " + wish_.property + " which it is");
+      " layers that would do, " + quotedList(layers, &OGRLayer::GetName) + "; say in " +
+      wish_.property + " which it is");
   }
   layer_ = layers.front();
   this->note("Of its " + std::to_string(count) + " layers, " + layerList(*dataset_) + ", \"" +

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
+#include "base/text/quotedList.h"
 #include "gis/layers/LayerFile.h"
 
 #include <gdal_priv.h>
@@ -25,16 +26,6 @@ bool hasHeights(const OGRGeometry& geometry)
   OGREnvelope3D box;
   geometry.getEnvelope(&box);
   return geometry.Is3D() && (box.MinZ != 0.0 || box.MaxZ != 0.0);
-}
-
-std::string quotedList(const std::set<std::string>& names)
-{
-  std::string list;
-  for (const std::string& name : names)
-  {
-    list += (list.empty() ? "\"" : ", \"") + name + "\"";
-  }
-  return list;
 }
 
 } // namespace

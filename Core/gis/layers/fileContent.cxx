@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
+#include "base/text/quotedList.h"
 #include "gis/layers/LayerFile.h"
 
 #include <cpl_string.h>
@@ -63,12 +64,7 @@ std::vector<NamedRaster> rastersIn(GDALDataset& dataset)
 
 std::string rasterList(const std::vector<NamedRaster>& rasters)
 {
-  std::string list;
-  for (const NamedRaster& raster : rasters)
-  {
-    list += (list.empty() ? "\"" : ", \"") + raster.label + "\"";
-  }
-  return list;
+  return quotedList(rasters, &NamedRaster::label);
 }
 
 /// Bands of colours for the eye.

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "base/text/plainText.h"
+#include "base/text/quotedList.h"
 #include "gis/base/FeatureRow.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/LayerFile.h"
@@ -41,20 +42,6 @@ Names namesOf(std::span<const std::string> materials)
     }
   }
   return names;
-}
-
-std::string nameList(const Names& names)
-{
-  std::string list;
-  for (const auto& [key, name] : names)
-  {
-    if (list.size() > 200)
-    {
-      return list + ", ...";
-    }
-    list += (list.empty() ? "\"" : ", \"") + name + "\"";
-  }
-  return list;
 }
 
 /// Reads a row into a pair.
@@ -132,8 +119,9 @@ private:
     {
       row.failField(column,
         " is \"" + text + "\", which no rock is of; " +
-          (materials_.empty() ? "the rocks have no Material"
-                              : "the rocks are of " + nameList(materials_)));
+          (materials_.empty()
+              ? "the rocks have no Material"
+              : "the rocks are of " + quotedList(materials_, &Names::value_type::second, 200)));
     }
     return found->second;
   }

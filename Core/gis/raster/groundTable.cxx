@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "base/text/plainText.h"
+#include "base/text/quotedList.h"
 #include "gis/base/FeatureRow.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/LayerFile.h"
@@ -180,16 +181,7 @@ int GroundTable::rowOf(const std::string& key) const
 
 std::string GroundTable::keys() const
 {
-  std::string list;
-  for (const auto& [key, row] : this->rows)
-  {
-    if (list.size() > 200)
-    {
-      return list + ", ...";
-    }
-    list += (list.empty() ? "\"" : ", \"") + key + "\"";
-  }
-  return list;
+  return quotedList(this->rows, &std::map<std::string, int>::value_type::first, 200);
 }
 
 GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const SurfaceMaterial& usual,
