@@ -4,12 +4,12 @@
 #include "base/random.h"
 #include "base/require.h"
 #include "base/text/numberText.h"
+#include "base/text/pointText.h"
 #include "geometry/planeSampling.h"
 #include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -155,6 +155,32 @@ double areaOf(const Terrain& terrain, std::int64_t cfes)
   return 0.5 * cell * cell * double(cfes);
 }
 
+Eigen::AlignedBox2d boundsOf(const Terrain& terrain)
+{
+  const Eigen::Vector2d corner = terrain.geometry().origin().head<2>();
+  return { corner, corner + Eigen::Vector2d(terrain.width(), terrain.height()) };
+}
+
+Eigen::AlignedBox2d boundsOf(std::span<const SourceRow> sources)
+{
+  Eigen::AlignedBox2d all;
+  for (const SourceRow& source : sources)
+  {
+    if (source.geometry == SourceGeometry::Point)
+    {
+      all.extend(source.position.head<2>());
+    }
+    for (const std::vector<Vec3>& part : source.parts)
+    {
+      for (const Vec3& p : part)
+      {
+        all.extend(p.head<2>());
+      }
+    }
+  }
+  return all;
+}
+
 } // namespace
 
 void ReleaseDefaults::validate() const
@@ -168,54 +194,19 @@ void ReleaseDefaults::validate() const
   require(this->mostRocks >= 1, "MaximumRocks", double(this->mostRocks), "", "at least 1");
 }
 
-std::string Extent::text() const
-{
-  return "x " + numberText(xMin) + " to " + numberText(xMax) + ", y " + numberText(yMin) + " to " +
-    numberText(yMax);
-}
-
-Extent extentOf(const Terrain& terrain)
-{
-  const GridGeometry& g = terrain.geometry();
-  return { g.xOrigin, g.yOrigin, g.xOrigin + terrain.width(), g.yOrigin + terrain.height() };
-}
-
 std::string whyNoGround(const Terrain& terrain, double x, double y)
 {
-  const Extent e = extentOf(terrain);
-  return x >= e.xMin && x <= e.xMax && y >= e.yMin && y <= e.yMax
+  const Eigen::AlignedBox2d slope = boundsOf(terrain);
+  return slope.contains(Eigen::Vector2d(x, y))
     ? " lies on nodata of the slope: there is no CFE under it"
-    : " is outside the slope: it spans " + e.text();
-}
-
-Extent extentOf(std::span<const SourceRow> sources)
-{
-  constexpr double far = std::numeric_limits<double>::infinity();
-  Extent all{ far, far, -far, -far };
-  const auto add = [&all](const Vec3& p)
-  {
-    all = { std::min(all.xMin, p.x()), std::min(all.yMin, p.y()), std::max(all.xMax, p.x()),
-      std::max(all.yMax, p.y()) };
-  };
-  for (const SourceRow& source : sources)
-  {
-    if (source.geometry == SourceGeometry::Point)
-    {
-      add(source.position);
-    }
-    for (const std::vector<Vec3>& part : source.parts)
-    {
-      std::for_each(part.begin(), part.end(), add);
-    }
-  }
-  return all;
+    : " is outside the slope: it spans " + boundsText(slope);
 }
 
 void requireOverlap(std::span<const SourceRow> sources, const Terrain& terrain,
   const std::string& layer, const std::string& layerCrs)
 {
-  const Extent a = extentOf(sources), b = extentOf(terrain);
-  if (a.xMin <= b.xMax && a.xMax >= b.xMin && a.yMin <= b.yMax && a.yMax >= b.yMin)
+  const Eigen::AlignedBox2d own = boundsOf(sources), slope = boundsOf(terrain);
+  if (own.intersects(slope))
   {
     return;
   }
@@ -229,8 +220,8 @@ void requireOverlap(std::span<const SourceRow> sources, const Terrain& terrain,
     why = ". The layer is in " + layerCrs +
       ", the terrain does not say in which CRS it is, so the coordinates were taken as they are";
   }
-  throw DataError(layer + ": the sources do not overlap the terrain: they span " + a.text() +
-    ", the terrain spans " + b.text() + why);
+  throw DataError(layer + ": the sources do not overlap the terrain: they span " + boundsText(own) +
+    ", the terrain spans " + boundsText(slope) + why);
 }
 
 std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, const Terrain* terrain,
@@ -298,8 +289,9 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
               numberText(source.position.y()) +
               whyNoGround(*terrain, source.position.x(), source.position.y())
                               : name + ": none of " + std::to_string(kMostDrawsOfSource) +
-              " places is on the terrain: the source spans " + extentOf({ &source, 1 }).text() +
-              ", the terrain " + extentOf(*terrain).text());
+              " places is on the terrain: the source spans " +
+              boundsText(boundsOf({ &source, 1 })) + ", the terrain " +
+              boundsText(boundsOf(*terrain)));
       }
       places.push_back(place);
     }

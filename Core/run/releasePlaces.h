@@ -44,15 +44,6 @@ struct ReleasePlace
   double height = 0.0; ///< Over ground, m.
 };
 
-/// Bounds in plan, m.
-struct Extent
-{
-  double xMin, yMin, xMax, yMax;
-  std::string text() const; ///< "x 1 to 2, y 3 to 4"
-};
-Extent extentOf(const Terrain& terrain);
-Extent extentOf(std::span<const SourceRow> sources);
-
 /// Why there is no CFE under a place (world coordinates, m), to follow its name in a message.
 std::string whyNoGround(const Terrain& terrain, double x, double y);
 

@@ -30,8 +30,7 @@ Eigen::Vector2d LayerPlaces::at(const FeatureRow& row, double x, double y)
     row.fail("the point " + number(x) + ", " + number(y) + " cannot be brought from " +
       crsLabel(*heights_.horizontal) + " to " + crsLabel(*target_) + ", the CRS of " + of_);
   }
-  least = least.cwiseMin(place);
-  most = most.cwiseMax(place);
+  box.extend(place);
   return place;
 }
 

@@ -9,7 +9,6 @@
 #include "gis/trust/heights.h"
 #include "gis/trust/unitDoubt.h"
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,9 +31,7 @@ public:
     const FeatureRow& row, const OGRLineString& part, double apart = 0.0);
 
   UnitDoubt doubt;
-  /// Box of all places so far.
-  Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector2d most = -least;
+  Eigen::AlignedBox2d box; ///< Of all places so far.
 
 private:
   const LayerHeights& heights_;

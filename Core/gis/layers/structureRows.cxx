@@ -1,6 +1,7 @@
 #include "gis/layers/structureRows.h"
 
 #include "base/errors.h"
+#include "base/text/pointText.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/lines.h"
 #include "terrain/Terrain.h"
@@ -64,19 +65,15 @@ double StructurePlaces::elevation(const FeatureRow& row, const char* column, dou
 
 void StructurePlaces::requireOverlap() const
 {
-  const GridGeometry& g = terrain_.geometry();
-  const double east = g.xOrigin + terrain_.width(), north = g.yOrigin + terrain_.height();
-  if (!(places_.least.x() <= east && places_.least.y() <= north && places_.most.x() >= g.xOrigin &&
-        places_.most.y() >= g.yOrigin))
+  const Eigen::Vector2d size(terrain_.width(), terrain_.height());
+  const Eigen::AlignedBox2d slope(origin_, origin_ + size);
+  if (!places_.box.intersects(slope))
   {
     const std::string assumed = heights_.horizontal
       ? ""
       : ". The layer does not say in which CRS it is, so its coordinates were taken as they are";
-    throw DataError(fileName_ + ": does not overlap the terrain: it spans x " +
-      number(places_.least.x()) + " to " + number(places_.most.x()) + ", y " +
-      number(places_.least.y()) + " to " + number(places_.most.y()) + ", the terrain x " +
-      number(g.xOrigin) + " to " + number(east) + ", y " + number(g.yOrigin) + " to " +
-      number(north) + assumed);
+    throw DataError(fileName_ + ": does not overlap the terrain: it spans " +
+      boundsText(places_.box, 10) + ", the terrain " + boundsText(slope, 10) + assumed);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include "base/errors.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,27 +28,14 @@ bool isAt(const Contours& contours, const Line& line, double z)
     first, first + std::ptrdiff_t(line.count), [z](double value) { return value == z; });
 }
 
-struct Extent
+Eigen::AlignedBox2d boundsOf(const Contours& contours, const Line& line)
 {
-  double west = std::numeric_limits<double>::infinity(), east = -west, south = west, north = east;
-
-  void add(double x, double y)
-  {
-    west = std::min(west, x);
-    east = std::max(east, x);
-    south = std::min(south, y);
-    north = std::max(north, y);
-  }
-};
-
-Extent extentOf(const Contours& contours, const Line& line)
-{
-  Extent extent;
+  Eigen::AlignedBox2d box;
   for (std::size_t i = line.first; i < line.first + line.count; ++i)
   {
-    extent.add(contours.x[i], contours.y[i]);
+    box.extend(Eigen::Vector2d(contours.x[i], contours.y[i]));
   }
-  return extent;
+  return box;
 }
 
 /// A closed line of four corners, all of them right angles.
@@ -153,13 +142,11 @@ void leaveOutFrames(Contours& contours, bool drawing, std::vector<std::string>& 
     {
       continue;
     }
-    const Extent frame = extentOf(contours, contours.lines[k]);
+    const Eigen::AlignedBox2d frame = boundsOf(contours, contours.lines[k]);
     bool about = contours.lines.size() > 1, higher = false, another = false;
     for (std::size_t other = 0; other < contours.lines.size() && about; ++other)
     {
-      const Extent inside = extentOf(contours, contours.lines[other]);
-      about = inside.west >= frame.west && inside.east <= frame.east &&
-        inside.south >= frame.south && inside.north <= frame.north;
+      about = frame.contains(boundsOf(contours, contours.lines[other]));
       const bool low = isAt(contours, contours.lines[other], 0.0);
       higher = higher || !low;
       another = another || (low && other != k);
