@@ -3,6 +3,8 @@
 #include "mesh/meshFile.h"
 #include "mesh/words.h"
 
+#include <boost/functional/hash.hpp>
+
 #include <array>
 #include <unordered_map>
 
@@ -38,22 +40,8 @@ public:
 
 private:
   using Key = std::array<double, 3>;
-  struct Hash
-  {
-    std::size_t operator()(const Key& key) const
-    {
-      std::size_t hash = 0;
-      for (const double value : key)
-      {
-        hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15u;
-        hash ^= hash >> 32;
-      }
-      return hash;
-    }
-  };
-
   MeshBuilder& mesh_;
-  std::unordered_map<Key, std::int64_t, Hash> numbers_;
+  std::unordered_map<Key, std::int64_t, boost::hash<Key>> numbers_;
 };
 
 std::size_t trianglesOf(std::string_view bytes)
