@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "base/text/plainText.h"
+#include "base/text/tableText.h"
 #include "gis/base/gdal.h"
 #include "gis/base/textWords.h"
 
@@ -12,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
+#include <string_view>
 
 namespace rockfall::gis
 {
@@ -47,12 +50,12 @@ bool hasDecimalCommas(const std::string& line)
 }
 
 /// The words of a line of an XYZ file: blanks may be many, a comma or semicolon stands for one.
-std::vector<std::string> wordsOf(const std::string& line)
+void takeWords(const std::string& line, std::vector<std::string_view>& words)
 {
   const bool decimal = hasDecimalCommas(line);
-  std::vector<std::string> words(1);
-  bool separated = false; // by a comma or semicolon since the last word
-  for (const char c : line)
+  words.assign(1, {});
+  bool separated = false; // by blanks alone since the last word
+  for (const char& c : line)
   {
     if (c == ' ' || c == '\t')
     {
@@ -72,7 +75,8 @@ std::vector<std::string> wordsOf(const std::string& line)
     }
     else
     {
-      words.back() += c;
+      std::string_view& word = words.back();
+      word = { word.empty() ? &c : word.data(), word.size() + 1 };
       separated = false;
     }
   }
@@ -80,31 +84,18 @@ std::vector<std::string> wordsOf(const std::string& line)
   {
     words.pop_back();
   }
-  return words;
 }
 
-/// Whether a line has nothing but numbers, at least so many of them, with a point as decimal mark:
-/// most lines of most files, which need no closer look.
-bool isPlain(const std::string& line, std::size_t needed)
+/// A word with a point or a comma as decimal mark.
+std::optional<double> numberIn(std::string_view word)
 {
-  std::size_t numbers = 0;
-  char before = ' ';
-  for (const char c : line + " ")
+  if (const auto plain = parsedNumber(word))
   {
-    const bool blank = c == ' ' || c == '\t';
-    const bool digit = c >= '0' && c <= '9';
-    if (blank && before != ' ' && !((before >= '0' && before <= '9') || before == '.'))
-    {
-      return false; // a sign alone, an exponent without a number
-    }
-    if (!blank && !digit && c != '.' && c != '-' && c != '+' && c != 'e' && c != 'E')
-    {
-      return false;
-    }
-    numbers += blank && before != ' ';
-    before = blank ? ' ' : c;
+    return plain;
   }
-  return numbers >= needed;
+  std::string text(word);
+  std::replace(text.begin(), text.end(), ',', '.');
+  return isNumber(text) ? std::optional(CPLAtof(text.c_str())) : std::nullopt;
 }
 
 /// The points of an XYZ file, one a line. The first line may be a header that says in which columns
@@ -131,29 +122,23 @@ public:
     }
     this->requireEnough("at most ", double(status.st_size) / shortest);
     std::string line;
+    std::vector<std::string_view> words;
     for (std::int64_t number = 1; text.line(line); ++number)
     {
       if (line.empty() || line[0] == '#' || line[0] == '/')
       {
         continue;
       }
-      const std::string where = fileName_ + ", line " + std::to_string(number) + ": ";
-      if (!isPlain(line, needed()))
+      takeWords(line, words);
+      if (number == 1 && !words.empty() && !numberIn(words[0]))
       {
-        const std::vector<std::string> words = wordsOf(line);
-        if (words.empty())
-        {
-          continue;
-        }
-        if (number == 1 && !isNumber(words[0]))
-        {
-          this->readHeader(words);
-          continue;
-        }
-        this->requireNumbers(where, line, words);
+        this->readHeader(words);
       }
-      ++points_;
-      this->findNode(where, line);
+      else if (!words.empty())
+      {
+        ++points_;
+        this->findNode(line, words, number);
+      }
     }
     this->requireEnough("", double(points_));
     TextGrid result;
@@ -172,7 +157,7 @@ public:
 private:
   std::size_t needed() const { return std::max({ at_[0], at_[1], at_[2] }) + 1; }
 
-  void readHeader(const std::vector<std::string>& words)
+  void readHeader(const std::vector<std::string_view>& words)
   {
     const std::initializer_list<const char*> names[] = { { "x", "lon", "east" },
       { "y", "lat", "north" }, { "z", "alt", "height" } };
@@ -189,58 +174,37 @@ private:
     }
   }
 
-  void requireNumbers(
-    const std::string& where, const std::string& line, const std::vector<std::string>& words) const
+  void findNode(
+    const std::string& line, const std::vector<std::string_view>& words, std::int64_t number)
   {
+    const auto fail = [&](const std::string& what)
+    { throw DataError(lineName(fileName_, std::size_t(number)) + ": " + what); };
     if (words.size() < needed())
     {
-      throw DataError(where + "\"" + line + "\" is no point: it has " +
-        std::to_string(words.size()) + " numbers, x, y and z are needed");
+      fail("\"" + line + "\" is no point: it has " + std::to_string(words.size()) +
+        " numbers, x, y and z are needed");
     }
-    for (std::size_t k = 0; k < needed(); ++k)
+    double place[3] = {};
+    for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      if (!isNumber(words[k]) && (k == at_[0] || k == at_[1] || k == at_[2]))
+      const std::string_view word = words[at_[axis]];
+      const auto value = numberIn(word);
+      if (!value)
       {
-        throw DataError(where + "\"" + words[k] + "\" is not a number");
+        fail("\"" + std::string(word) + "\" is not a number");
       }
+      place[axis] = *value;
     }
-  }
-
-  void findNode(const std::string& where, const std::string& line)
-  {
     if (found_.empty())
     {
       found_.assign(std::size_t(columns_) * std::size_t(rows_), 0);
-    }
-    double place[2] = {};
-    const char* at = line.c_str();
-    if (isPlain(line, needed()))
-    {
-      for (std::size_t k = 0; k <= std::max(at_[0], at_[1]); ++k)
-      {
-        char* end = nullptr;
-        const double value = CPLStrtod(at, &end);
-        at = end;
-        place[0] = k == at_[0] ? value : place[0];
-        place[1] = k == at_[1] ? value : place[1];
-      }
-    }
-    else
-    {
-      std::vector<std::string> words = wordsOf(line);
-      for (int axis = 0; axis < 2; ++axis)
-      {
-        std::string& word = words[at_[axis]];
-        std::replace(word.begin(), word.end(), ',', '.');
-        place[axis] = CPLAtof(word.c_str());
-      }
     }
     const double column = (place[0] - affine_[0]) / affine_[1] - 0.5;
     const double row = (place[1] - affine_[3]) / affine_[5] - 0.5;
     if (std::abs(column - std::round(column)) > onNodeWithin ||
       std::abs(row - std::round(row)) > onNodeWithin)
     {
-      throw DataError(where + "the point " + gis::number(place[0]) + ", " + gis::number(place[1]) +
+      fail("the point " + gis::number(place[0]) + ", " + gis::number(place[1]) +
         " is on no node of a grid of even steps, as the first lines make one");
     }
     if (column > -0.5 && column < columns_ - 0.5 && row > -0.5 && row < rows_ - 0.5)
