@@ -1,7 +1,6 @@
 #include "base/RockMaterial.h"
 
-#include "base/errors.h"
-#include "base/text/nameKey.h"
+#include "base/text/placeOfName.h"
 
 namespace rockfall
 {
@@ -28,17 +27,7 @@ std::span<const RockMaterial> rockMaterials()
 
 const RockMaterial& rockMaterialFromName(const std::string& name)
 {
-  const std::string wanted = nameKey(name);
-  std::string choices;
-  for (const RockMaterial& material : materials)
-  {
-    if (wanted == material.name)
-    {
-      return material;
-    }
-    choices += (choices.empty() ? "" : ", ") + std::string(material.name);
-  }
-  throw ParameterError("Material is \"" + name + "\", it must be one of " + choices);
+  return materials[placeOfName(materials, name, "Material", &RockMaterial::name)];
 }
 
 } // namespace rockfall

@@ -1,14 +1,13 @@
 #include "base/VolumeDistribution.h"
 
 #include "base/require.h"
-#include "base/text/plainText.h"
+#include "base/text/placeOfName.h"
 
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace rockfall
 {
@@ -16,13 +15,8 @@ namespace rockfall
 namespace
 {
 
-constexpr std::pair<VolumeLaw, const char*> names[] = {
-  { VolumeLaw::Fixed, "fixed" },
-  { VolumeLaw::Uniform, "uniform" },
-  { VolumeLaw::Normal, "normal" },
-  { VolumeLaw::LogNormal, "lognormal" },
-  { VolumeLaw::PowerLaw, "powerlaw" },
-};
+/// In the order of VolumeLaw.
+constexpr const char* names[] = { "fixed", "uniform", "normal", "lognormal", "powerlaw" };
 
 /// Bounds that leave less than this of a distribution are a mistake, not a choice.
 constexpr double leastShare = 1e-6;
@@ -64,29 +58,16 @@ struct Bell
 
 std::string volumeLawName(VolumeLaw law)
 {
-  for (const auto& [known, name] : names)
+  if (law < VolumeLaw::Fixed || law > VolumeLaw::PowerLaw)
   {
-    if (known == law)
-    {
-      return name;
-    }
+    throw ParameterError("VolumeLaw is " + std::to_string(int(law)) + ", it must be 0 to 4");
   }
-  throw ParameterError("VolumeLaw is " + std::to_string(int(law)) + ", it must be 0 to 4");
+  return names[int(law)];
 }
 
 VolumeLaw volumeLawFromName(const std::string& name)
 {
-  const std::string lower = lowerCase(name);
-  std::string choices;
-  for (const auto& [law, known] : names)
-  {
-    if (lower == known)
-    {
-      return law;
-    }
-    choices += (choices.empty() ? "" : ", ") + std::string(known);
-  }
-  throw ParameterError("VolumeLaw is \"" + name + "\", it must be one of " + choices);
+  return VolumeLaw(placeOfName(names, name, "VolumeLaw"));
 }
 
 void VolumeDistribution::validate() const

@@ -1,8 +1,8 @@
 #include "geometry/shapes.h"
 
 #include "base/require.h"
-#include "base/text/nameKey.h"
 #include "base/text/numberText.h"
+#include "base/text/placeOfName.h"
 #include "geometry/shell.h"
 
 #include <algorithm>
@@ -17,28 +17,12 @@ namespace rockfall
 namespace
 {
 
-struct NamedShape
-{
-  Shape shape;
-  const char* name;
-};
-
 /// Longest axis to shortest: a longer mesh shows no ellipsoid, and rolls and stands as no rock does.
 constexpr double kLongestEllipsoid = 5.0;
 
-constexpr std::array<NamedShape, kShapes> names = { {
-  { Shape::Cube, "cube" },
-  { Shape::Tetrahedron, "tetrahedron" },
-  { Shape::Octahedron, "octahedron" },
-  { Shape::Dodecahedron, "dodecahedron" },
-  { Shape::Icosahedron, "icosahedron" },
-  { Shape::Box, "box" },
-  { Shape::Eota111, "eota111" },
-  { Shape::Eota221, "eota221" },
-  { Shape::File, "file" },
-  { Shape::Sphere, "sphere" },
-  { Shape::Ellipsoid, "ellipsoid" },
-} };
+/// In the order of Shape.
+constexpr std::array<const char*, kShapes> names = { "cube", "tetrahedron", "octahedron",
+  "dodecahedron", "icosahedron", "box", "eota111", "eota221", "file", "sphere", "ellipsoid" };
 
 /// All sign changes of the non-zero coordinates, in the three cyclic orders of the axes.
 void addCyclic(std::vector<Vec3>& points, const Vec3& point)
@@ -219,30 +203,17 @@ Polyhedron makeEllipsoid(const Vec3& lengths)
 
 std::string shapeName(Shape shape)
 {
-  for (const NamedShape& named : names)
+  if (int(shape) < 0 || int(shape) >= kShapes)
   {
-    if (named.shape == shape)
-    {
-      return named.name;
-    }
+    throw ParameterError("Shape is " + std::to_string(int(shape)) + ", it must be 0 to " +
+      std::to_string(kShapes - 1));
   }
-  throw ParameterError("Shape is " + std::to_string(int(shape)) + ", it must be 0 to " +
-    std::to_string(names.size() - 1));
+  return names[std::size_t(shape)];
 }
 
 Shape shapeFromName(const std::string& name)
 {
-  const std::string wanted = nameKey(name);
-  std::string choices;
-  for (const NamedShape& named : names)
-  {
-    if (wanted == named.name)
-    {
-      return named.shape;
-    }
-    choices += (choices.empty() ? "" : ", ") + std::string(named.name);
-  }
-  throw ParameterError("Shape is \"" + name + "\", it must be one of " + choices);
+  return Shape(placeOfName(names, name, "Shape"));
 }
 
 } // namespace rockfall
