@@ -140,27 +140,21 @@ Vec3 JointSet::normal() const
 
 void JointSet::validate(const std::string& name) const
 {
-  const auto require = [&](bool good, const char* field, double value, const char* rule)
-  {
-    if (!good)
-    {
-      throw ParameterError(name + ": " + field + " is " + numberText(value) + rule);
-    }
-  };
+  const std::string of = name + ": ";
   // The way from degrees and back may leave the last digit of 90°.
   const double right = degrees(this->dip);
-  require(right >= 0.0 && right <= 90.0 + 1e-9, "dip", right, " degrees, it must be 0 to 90");
-  require(std::abs(degrees(this->dipDirection)) <= 360.0 + 1e-9, "dip direction",
-    degrees(this->dipDirection), " degrees, it must be -360 to 360");
-  require(this->spacing > 0.0 && std::isfinite(this->spacing), "spacing", this->spacing,
-    " m, it must be positive and finite");
-  require(std::abs(this->offset) <= mostSpacings * this->spacing, "offset", this->offset,
-    " m, it must be within a million spacings");
+  require(right >= 0.0 && right <= 90.0 + 1e-9, of + "dip", right, " degrees", "0 to 90");
+  const double direction = degrees(this->dipDirection);
+  require(std::abs(direction) <= 360.0 + 1e-9, of + "dip direction", direction, " degrees",
+    "-360 to 360");
+  require(this->spacing > 0.0 && std::isfinite(this->spacing), of + "spacing", this->spacing, " m",
+    "positive and finite");
+  require(std::abs(this->offset) <= mostSpacings * this->spacing, of + "offset", this->offset, " m",
+    "within a million spacings");
   require(this->spacingDeviation >= 0.0 && this->spacingDeviation <= mostDeviation * this->spacing,
-    "spacing deviation", this->spacingDeviation, " m, it must be 0 to ten times the spacing");
+    of + "spacing deviation", this->spacingDeviation, " m", "0 to ten times the spacing");
   const double tilt = degrees(this->orientationDeviation);
-  require(
-    tilt >= 0.0 && tilt <= 45.0, "orientation deviation", tilt, " degrees, it must be 0 to 45");
+  require(tilt >= 0.0 && tilt <= 45.0, of + "orientation deviation", tilt, " degrees", "0 to 45");
 }
 
 void MassCut::validate() const
