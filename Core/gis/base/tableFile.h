@@ -18,9 +18,9 @@ struct TableFile
 };
 
 /// `fileName` itself, unless it is a table by its ending (.csv, .tsv, .psv) whose text is not plain
-/// UTF-8 from its header on (tableText.h): then a copy that is, with its .csvt and .prj beside it.
-/// GML is copied without the .gfs and .xsd beside it: GDAL would take fields, types and the CRS from
-/// these, and write a .gfs there. Throws DataError naming file and line.
+/// UTF-8, or not table from its first line on: then a copy that is, with its .csvt and .prj beside
+/// it. GML is copied without the .gfs and .xsd beside it: GDAL would take fields, types and the CRS
+/// from these, and write a .gfs there. Throws DataError naming file and line.
 TableFile readableTable(const std::string& fileName, std::vector<std::string>& notes);
 
 /// A note if the .gfs beside GML says otherwise than the one that GDAL has made of it anew.

@@ -5,7 +5,6 @@
 #include "base/text/plainText.h"
 #include "gis/base/gdal.h"
 #include "gis/base/textWords.h"
-#include "gis/raster/xyzPoints.h"
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>

@@ -33,4 +33,9 @@ struct TextGrid
 /// nodes. Decimal points, commas, nan and inf are numbers. Does nothing for other formats.
 TextGrid checkTextGrid(GDALDataset& dataset, const std::string& fileName);
 
+/// The same of an XYZ file (xyzPoints.cxx), whose nodes without a point are nodata. Throws
+/// DataError naming the line for a word that is no number and for a point that is on no node,
+/// FileError if nearly all nodes have none.
+TextGrid checkXyzPoints(GDALDataset& dataset, const std::string& fileName);
+
 } // namespace rockfall::gis

@@ -1,4 +1,5 @@
-#include "gis/raster/xyzPoints.h"
+// Grids that are written as points, one a line.
+#include "gis/raster/textGrid.h"
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
