@@ -3,6 +3,7 @@
 /// @file
 /// Sentences on numbers out of their plausible range.
 
+#include "base/Tally.h"
 #include "base/text/numberText.h"
 #include "terrain/plausible.h"
 
@@ -30,10 +31,7 @@ public:
   void look(bool fits, const std::string& name, Words&& words)
   {
     ++all_;
-    if (!fits && ++count_ == 1)
-    {
-      first_ = name + words();
-    }
+    tally_.look(!fits, [&] { return name + words(); });
   }
 
   /// The same of a number, told in `unit` (with the blank before it), which is `scale` of SI.
@@ -51,16 +49,14 @@ public:
 
   void tell(std::vector<std::string>& notes) const
   {
-    if (count_ > 0)
-    {
-      notes.push_back(std::to_string(count_) + " of " + std::to_string(all_) + " " + kind_ +
-        " look implausible, first " + first_ + ". " + ask_);
-    }
+    tally_.tell(notes, "",
+      " of " + std::to_string(all_) + " " + kind_ + " look implausible, first ", ". " + ask_);
   }
 
 private:
-  std::string kind_, ask_, first_;
-  std::int64_t all_ = 0, count_ = 0;
+  std::string kind_, ask_;
+  std::int64_t all_ = 0;
+  Tally tally_;
 };
 
 /// Tells of each, in their order.

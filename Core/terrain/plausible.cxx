@@ -1,5 +1,6 @@
 #include "terrain/plausible.h"
 
+#include "base/Tally.h"
 #include "base/hectare.h"
 #include "base/text/numberText.h"
 #include "geometry/twins.h"
@@ -218,23 +219,21 @@ template <class Item>
 void tellTwice(const TwinWords& words, const std::vector<const Item*>& items,
   const std::vector<int>& earlier, std::vector<std::string>& notes)
 {
-  std::int64_t count = 0;
-  std::string first;
+  Tally twice;
   for (std::size_t i = 0; i < items.size(); ++i)
   {
-    if (earlier[i] >= 0 && ++count == 1)
-    {
-      const std::int64_t other = items[std::size_t(earlier[i])]->feature, own = items[i]->feature;
-      first = other == own ? "two parts of " + featureText(own)
-                           : "features " + std::to_string(other) + " and " + std::to_string(own);
-    }
+    twice.look(earlier[i] >= 0,
+      [&]
+      {
+        const std::int64_t other = items[std::size_t(earlier[i])]->feature, own = items[i]->feature;
+        return other == own ? "two parts of " + featureText(own)
+                            : "features " + std::to_string(other) + " and " + std::to_string(own);
+      });
   }
-  if (count > 0)
-  {
-    notes.push_back(std::to_string(count) + " of " + std::to_string(items.size()) + " " +
-      words.kind + " stand within " + text(kTwinDistance) + " m of another one, first " + first +
-      ". " + words.effect + ": was something given twice?");
-  }
+  twice.tell(notes, "",
+    " of " + std::to_string(items.size()) + " " + words.kind + " stand within " +
+      text(kTwinDistance) + " m of another one, first ",
+    std::string(". ") + words.effect + ": was something given twice?");
 }
 
 std::string placeText(const Point& p)
@@ -253,44 +252,31 @@ template <class Item>
 void tellStretches(const TwinWords& words, const std::vector<const Item*>& items,
   const std::vector<SharedStretch>& stretches, const Point& origin, std::vector<std::string>& notes)
 {
-  std::int64_t others = 0, selves = 0, crossed = 0;
-  std::string first, self, cross;
+  Tally others, selves, crossed;
   for (std::size_t i = 0; i < items.size(); ++i)
   {
     const SharedStretch& stretch = stretches[i];
     const std::string own = featureText(items[i]->feature);
-    if (stretch.earlier == int(i) && ++selves == 1)
-    {
-      self = own + stretchText(stretch, origin);
-    }
-    else if (stretch.earlier >= 0 && stretch.earlier != int(i) && ++others == 1)
-    {
-      const Item& other = *items[std::size_t(stretch.earlier)];
-      first = own + " on " + (other.feature == items[i]->feature ? "another part of " : "") +
-        featureText(other.feature) + stretchText(stretch, origin);
-    }
-    if (stretch.earlier != int(i) && stretch.crossing && ++crossed == 1)
-    {
-      cross = own + " at " + placeText(*stretch.crossing + origin);
-    }
+    const bool self = stretch.earlier == int(i);
+    selves.look(self, [&] { return own + stretchText(stretch, origin); });
+    others.look(stretch.earlier >= 0 && !self,
+      [&]
+      {
+        const std::int64_t other = items[std::size_t(stretch.earlier)]->feature;
+        return own + " on " + (other == items[i]->feature ? "another part of " : "") +
+          featureText(other) + stretchText(stretch, origin);
+      });
+    crossed.look(stretch.crossing && !self,
+      [&] { return own + " at " + placeText(*stretch.crossing + origin); });
   }
   const std::string of = " of " + std::to_string(items.size()) + " " + words.kind;
-  if (others > 0)
-  {
-    notes.push_back(std::to_string(others) + of + " stand within " + text(kTwinDistance) +
-      " m of another one over a part of their length, first " + first + ". " + words.effect +
-      " there: was something given twice?");
-  }
-  if (selves > 0)
-  {
-    notes.push_back(std::to_string(selves) + of + " go back on their own line, first " + self +
-      ". They are at work once there: is the line as it was meant?");
-  }
-  if (crossed > 0)
-  {
-    notes.push_back(std::to_string(crossed) + of + " cross their own line, first " + cross +
-      ": are its points in their order?");
-  }
+  others.tell(notes, "",
+    of + " stand within " + text(kTwinDistance) +
+      " m of another one over a part of their length, first ",
+    std::string(". ") + words.effect + " there: was something given twice?");
+  selves.tell(notes, "", of + " go back on their own line, first ",
+    ". They are at work once there: is the line as it was meant?");
+  crossed.tell(notes, "", of + " cross their own line, first ", ": are its points in their order?");
 }
 
 /// Forests of single stems that leave no room to walk in.

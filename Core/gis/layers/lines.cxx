@@ -85,20 +85,15 @@ std::vector<const OGRLineString*> linesIn(const FeatureRow& row, std::int64_t* o
 void CrossedOutlines::look(const OGRGeometry& polygon, std::int64_t row)
 {
   ++all_;
-  if (!polygon.IsValid() && ++count_ == 1)
-  {
-    first_ = row;
-  }
+  crossed_.look(!polygon.IsValid(), [row] { return std::to_string(row); });
 }
 
 void CrossedOutlines::tell(const std::string& fileName, std::vector<std::string>& notes) const
 {
-  if (count_ > 0)
-  {
-    notes.push_back(fileName + ": " + std::to_string(count_) + " of " + std::to_string(all_) +
-      " polygons have an outline that crosses or touches itself, first row " +
-      std::to_string(first_) + ". What it encloses twice is outside");
-  }
+  crossed_.tell(notes, fileName + ": ",
+    " of " + std::to_string(all_) +
+      " polygons have an outline that crosses or touches itself, first row ",
+    ". What it encloses twice is outside");
 }
 
 void requireValidPolygon(const FeatureRow& row)

@@ -3,6 +3,7 @@
 /// @file
 /// Lines and rings of features, for every reader of them alike. Internal to gis/: needs GDAL's headers.
 
+#include "base/Tally.h"
 #include "gis/base/FeatureRow.h"
 
 #include <cstdint>
@@ -26,7 +27,8 @@ public:
   void tell(const std::string& fileName, std::vector<std::string>& notes) const;
 
 private:
-  std::int64_t all_ = 0, count_ = 0, first_ = 0;
+  std::int64_t all_ = 0;
+  Tally crossed_;
 };
 
 /// Throws DataError naming file and row if the outline of the row's polygon, or of one of them,

@@ -94,11 +94,8 @@ void SourcePlacing::tell(const std::string& fileName, std::vector<std::string>& 
   }
   doubt.tell(notes);
   notes.insert(notes.end(), notes_.begin(), notes_.end());
-  if (beside_ > 0)
-  {
-    notes.push_back(std::to_string(beside_) +
-      " rows have an x and y other than their geometry, which counts, first " + firstBeside_);
-  }
+  beside_.tell(
+    notes, "", " rows have an x and y other than their geometry, which counts, first ", "");
   if (clamped_ > 0)
   {
     notes.push_back(fileName + ": " + std::to_string(clamped_) +
@@ -160,11 +157,12 @@ void SourcePlacing::lookBeside(const FeatureRow& row, const OGRPoint& point)
   const auto said = [&row](const char* name)
   { return parsedNumber(row.text(name).value_or(std::string())); };
   const auto x = said("x"), y = said("y");
-  if (x && y && std::hypot(*x - point.getX(), *y - point.getY()) > far && ++beside_ == 1)
-  {
-    firstBeside_ = row.where() + ": " + number(*x) + ", " + number(*y) + " and " +
-      number(point.getX()) + ", " + number(point.getY());
-  }
+  beside_.look(x && y && std::hypot(*x - point.getX(), *y - point.getY()) > far,
+    [&]
+    {
+      return row.where() + ": " + number(*x) + ", " + number(*y) + " and " + number(point.getX()) +
+        ", " + number(point.getY());
+    });
 }
 
 /// Of a KML feature without an altitude over a datum.

@@ -3,6 +3,7 @@
 /// @file
 /// Where the sources of a layer are. Internal to gis/: needs GDAL's headers.
 
+#include "base/Tally.h"
 #include "gis/base/FeatureRow.h"
 #include "gis/base/crs.h"
 #include "gis/layers/sources.h"
@@ -45,8 +46,7 @@ private:
   std::vector<std::string> notes_;           ///< Of the heights.
   bool anyHeight_ = false;
   std::int64_t clamped_ = 0; ///< Rows of KML that have an altitude that is not to be used.
-  std::int64_t beside_ = 0;  ///< Rows whose columns x and y are not where their point is.
-  std::string firstBeside_;
+  Tally beside_;             ///< Rows whose columns x and y are not where their point is.
 };
 
 } // namespace rockfall::gis

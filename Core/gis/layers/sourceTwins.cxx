@@ -1,5 +1,6 @@
 #include "gis/layers/sourceTwins.h"
 
+#include "base/Tally.h"
 #include "base/text/numberText.h"
 #include "geometry/twins.h"
 
@@ -94,10 +95,8 @@ public:
       if (same != there.end())
       {
         twin_[std::size_t(of.rows[i])] = true;
-        if (++count_ == 1)
-        {
-          first_ = this->rowText(*same) + " and " + this->rowText(of.rows[i]);
-        }
+        whole_.look(
+          true, [&] { return this->rowText(*same) + " and " + this->rowText(of.rows[i]); });
       }
       else if (there.size() < mostCompared)
       {
@@ -150,18 +149,12 @@ public:
   {
     const std::string of =
       " of " + std::to_string(rows_.size()) + " sources release the same rocks ";
-    if (count_ > 0)
-    {
-      notes.push_back(fileName + ": " + std::to_string(count_) + of + "within " +
-        numberText(kTwinDistance) + " m of another one, first rows " + first_ +
-        ". Was something given twice?");
-    }
-    if (parts_ > 0)
-    {
-      notes.push_back(fileName + ": " + std::to_string(parts_) + of +
-        "on a part of another one or of themselves, first row " + firstPart_ +
-        ". Their rocks add up there: was something given twice?");
-    }
+    whole_.tell(notes, fileName + ": ",
+      of + "within " + numberText(kTwinDistance) + " m of another one, first rows ",
+      ". Was something given twice?");
+    parts_.tell(notes, fileName + ": ",
+      of + "on a part of another one or of themselves, first row ",
+      ". Their rocks add up there: was something given twice?");
   }
 
 private:
@@ -169,16 +162,12 @@ private:
   std::string rowText(int row) const { return std::to_string(rows_[std::size_t(row)].row); }
   void countPart(int row, const std::string& on)
   {
-    if (++parts_ == 1)
-    {
-      firstPart_ = this->rowText(row) + " on " + on;
-    }
+    parts_.look(true, [&] { return this->rowText(row) + " on " + on; });
   }
 
   const std::vector<SourceRow>& rows_;
   std::vector<bool> twin_; ///< Of all: told as a whole.
-  std::int64_t count_ = 0, parts_ = 0;
-  std::string first_, firstPart_;
+  Tally whole_, parts_;
 };
 
 } // namespace

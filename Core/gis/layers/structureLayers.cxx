@@ -1,5 +1,6 @@
 #include "gis/layers/structureLayers.h"
 
+#include "base/Tally.h"
 #include "base/errors.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/structureRows.h"
@@ -24,8 +25,7 @@ void askAfterGroundUnder(
   const std::vector<Barrier>& barriers, const Terrain& terrain, std::vector<std::string>& notes)
 {
   const double cell = terrain.geometry().cellSize;
-  std::int64_t count = 0;
-  std::string first;
+  Tally beyond;
   for (const Barrier& barrier : barriers)
   {
     double without = 0.0, all = 0.0;
@@ -41,18 +41,17 @@ void askAfterGroundUnder(
       }
       all += way.norm();
     }
-    if (without > 2.0 * cell && ++count == 1)
-    {
-      first = std::to_string(barrier.feature) + " on " + number(std::round(without)) + " of " +
-        number(std::round(all)) + " m";
-    }
+    beyond.look(without > 2.0 * cell,
+      [&]
+      {
+        return std::to_string(barrier.feature) + " on " + number(std::round(without)) + " of " +
+          number(std::round(all)) + " m";
+      });
   }
-  if (count > 0)
-  {
-    notes.push_back(std::to_string(count) + " of " + std::to_string(barriers.size()) +
-      " barriers go on where the slope has no ground, first feature " + first +
-      ". They hold and record nothing there");
-  }
+  beyond.tell(notes, "",
+    " of " + std::to_string(barriers.size()) +
+      " barriers go on where the slope has no ground, first feature ",
+    ". They hold and record nothing there");
 }
 
 /// An embankment by the elevation of its crest gets its greatest height over ground.

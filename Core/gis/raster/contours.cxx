@@ -1,5 +1,6 @@
 #include "gis/raster/contours.h"
 
+#include "base/Tally.h"
 #include "base/detachedCall.h"
 #include "base/require.h"
 #include "gis/layers/fileContent.h"
@@ -142,7 +143,7 @@ TinPoints pointsOf(const Contours& contours, double x0, double y0, double spacin
 struct UnitedPoints
 {
   TinPoints points;
-  std::string note; ///< Empty: nothing to tell.
+  Tally meetings; ///< Vertices where contours of different heights meet.
 };
 
 /// One point where several stand. Contours of different heights that meet there get their mean, and
@@ -159,8 +160,6 @@ UnitedPoints unite(const TinPoints& points, double x0, double y0)
     });
   UnitedPoints result;
   TinPoints& united = result.points;
-  std::int64_t meetings = 0;
-  std::string first;
   for (std::size_t i = 0; i < order.size();)
   {
     std::size_t end = i;
@@ -172,20 +171,16 @@ UnitedPoints unite(const TinPoints& points, double x0, double y0)
       sum += points.z[order[end]];
     }
     const double low = points.z[order[i]], high = points.z[order[end - 1]];
-    if (low != high && ++meetings == 1)
-    {
-      first = number(low) + " m and " + number(high) + " m at " + number(points.x[order[i]] + x0) +
-        ", " + number(points.y[order[i]] + y0);
-    }
+    result.meetings.look(low != high,
+      [&]
+      {
+        return number(low) + " m and " + number(high) + " m at " + number(points.x[order[i]] + x0) +
+          ", " + number(points.y[order[i]] + y0);
+      });
     united.x.push_back(points.x[order[i]]);
     united.y.push_back(points.y[order[i]]);
     united.z.push_back(low == high ? low : sum / double(end - i));
     i = end;
-  }
-  if (meetings > 0)
-  {
-    result.note = "Contours of different heights meet at " + std::to_string(meetings) +
-      " vertices, the first of " + first + "; their mean was taken.";
   }
   return result;
 }
@@ -283,12 +278,11 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   UnitedPoints united =
     detachedCall([points = pointsOf(contours, x0, y0, grid.cellSize, options, fileName), x0, y0]
       { return unite(points, x0, y0); });
-  for (const std::string& note : { united.note, crossingsNote(contours) })
+  united.meetings.tell(result.notes, "Contours of different heights meet at ",
+    " vertices, the first of ", "; their mean was taken.");
+  if (const std::string crossed = crossingsNote(contours); !crossed.empty())
   {
-    if (!note.empty())
-    {
-      result.notes.push_back(note);
-    }
+    result.notes.push_back(crossed);
   }
   const std::size_t pointCount = united.points.x.size();
   TinNodes nodes =

@@ -1,6 +1,7 @@
 // Polygons with classes.
 #include "gis/raster/groundCells.h"
 
+#include "base/Tally.h"
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/nameKey.h"
@@ -212,26 +213,23 @@ public:
     const double width =
       2.0 * OGR_G_Area(OGRGeometry::ToHandle(const_cast<OGRGeometry*>(&geometry))) / around;
     ++all_;
-    if (width < cell_ && ++narrow_ == 1)
-    {
-      first_ = "feature " + std::to_string(feature) + " with " + numberText(width, 3) + " m";
-    }
+    narrow_.look(width < cell_,
+      [&]
+      { return "feature " + std::to_string(feature) + " with " + numberText(width, 3) + " m"; });
   }
 
   void tell(const std::string& fileName, std::vector<std::string>& notes) const
   {
-    if (narrow_ > 0)
-    {
-      notes.push_back(fileName + ": " + std::to_string(narrow_) + " of " + std::to_string(all_) +
-        " polygons are narrower than the slope's cells of " + number(cell_) + " m, first " +
-        first_ + ". Only cells whose centre is in one have its class: take a smaller CellSize.");
-    }
+    narrow_.tell(notes, fileName + ": ",
+      " of " + std::to_string(all_) + " polygons are narrower than the slope's cells of " +
+        number(cell_) + " m, first ",
+      ". Only cells whose centre is in one have its class: take a smaller CellSize.");
   }
 
 private:
   double cell_;
-  std::int64_t all_ = 0, narrow_ = 0;
-  std::string first_;
+  std::int64_t all_ = 0;
+  Tally narrow_;
 };
 
 /// Multiplies the coordinates of polygons.
