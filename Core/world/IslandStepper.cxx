@@ -36,7 +36,7 @@ IslandStepper::IslandStepper(WorldState& world, const Island& island)
   , island_(island)
   , work_(workOfThread())
 {
-  work_.solver.stiffness = pairStiffness(world.parameters);
+  work_.solver.setStiffness(pairStiffness(world.parameters));
 }
 
 double IslandStepper::timeReached(double until) const

@@ -3,7 +3,7 @@
 /// @file
 /// Working memory of a step of an island (IslandStepper).
 
-#include "solve/island/IslandSolver.h"
+#include "solve/island/SoftSolver.h"
 #include "world/WorldState.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr std::size_t kRockGrain = 16, kPairGrain = 32;
 /// Working memory of a step of an island, kept by thread.
 struct IslandWork
 {
-  IslandSolver solver;
+  SoftSolver solver;
   std::vector<IslandBody> bodies;
   std::vector<IslandContact> contacts;
   std::vector<double> energyBefore;

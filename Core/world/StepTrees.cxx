@@ -41,14 +41,14 @@ void StepTrees::setAbsent(const Stem& stem, bool absent)
   const auto set = [&](const Contact&, std::size_t k)
   {
     work_.contacts[k].absent = absent;
-    work_.solver.rows().setAbsent(k);
+    work_.solver.setAbsent(k);
   };
   this->forContacts(stem, set);
 }
 
 BlockState StepTrees::endOf(const Stem& stem) const
 {
-  return work_.solver.rows().end(std::size_t(this->rockOf(stem).place));
+  return work_.solver.end(std::size_t(this->rockOf(stem).place));
 }
 
 BlockState StepTrees::endWithout(const Stem& stem, double h) const
@@ -64,7 +64,7 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
     {
       continue;
     }
-    const Vec3 impulse = h * work_.solver.rows().force(k) * c.normal;
+    const Vec3 impulse = h * work_.solver.force(k) * c.normal;
     const Mat3 back = end.orientation.toRotationMatrix().transpose();
     end.velocity -= impulse / body.block.mass();
     end.spin -=
@@ -84,7 +84,7 @@ bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through
     const double approach = -c.normal.dot(end.velocity + end.angularVelocity().cross(lever));
     meets = meets ||
       (approach > (c.closed() ? body.restingSpeed : 0.0) &&
-        (!through || work_.solver.rows().gap(k) < 0.0));
+        (!through || work_.solver.gap(k) < 0.0));
   };
   this->forContacts(stem, look);
   return meets && !fall.structures.stemHolds(stem.tree, body, end, body.contacts);
@@ -142,8 +142,7 @@ bool StepTrees::look(double h)
     for (std::size_t k = 0; k < contacts.size(); ++k)
     {
       const int tree = rock.fall().structures.treeOf(contacts[k]);
-      if (tree < 0 || work_.solver.rows().force(work_.slopeFirsts[m] + k) <= 0.0 ||
-        this->isKnown(m, tree))
+      if (tree < 0 || work_.solver.force(work_.slopeFirsts[m] + k) <= 0.0 || this->isKnown(m, tree))
       {
         continue;
       }

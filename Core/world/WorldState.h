@@ -7,7 +7,7 @@
 #include "contact/pairs.h"
 #include "rock/fall/SingleRock.h"
 #include "rock/rockContacts.h"
-#include "solve/island/IslandSolver.h"
+#include "solve/island/SoftSolver.h"
 
 #include <cstdint>
 #include <span>

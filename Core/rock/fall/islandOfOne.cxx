@@ -6,7 +6,7 @@
 #include "rock/fall/contactPhase.h"
 #include "rock/parts/OverlapRecovery.h"
 #include "rock/restitution.h"
-#include "solve/island/IslandSolver.h"
+#include "solve/island/SoftSolver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace
 /// Working memory, of a thread.
 struct Work
 {
-  IslandSolver solver;
+  SoftSolver solver;
   std::vector<IslandBody> bodies;
   std::vector<IslandContact> contacts;
 };
@@ -83,8 +83,8 @@ void stepAsIsland(Fall& fall, double h)
   body.contactsBefore = body.contacts;
   const double energyBefore = body.mechanicalEnergy(fall.parameters.gravity) + body.springEnergy;
   thread_local Work work;
-  work.solver.stiffness = { fall.parameters.normalPenalty, fall.parameters.shearRatio,
-    fall.parameters.rigid };
+  work.solver.setStiffness(
+    { fall.parameters.normalPenalty, fall.parameters.shearRatio, fall.parameters.rigid });
   work.bodies.assign(1, {});
   work.bodies[0].block = &body.block;
   work.bodies[0].state = &body.state;

@@ -11,9 +11,13 @@ namespace rockfall
 
 using namespace soft;
 
-void SoftSolver::begin(const StepRequest& request, const PairStiffness& stiffness,
-  std::vector<IslandBody>& bodies, std::vector<IslandContact>& contacts)
+void SoftSolver::begin(const StepRequest& request, Accept accept, std::vector<IslandBody>& bodies,
+  std::vector<IslandContact>& contacts)
 {
+  accept_ = accept;
+  seen_ = {};
+  look_ = 0;
+  looking_ = true;
   step_.duration = request.duration;
   step_.gravity = request.gravity;
   step_.origin = bodies.front().state->position;
@@ -21,7 +25,6 @@ void SoftSolver::begin(const StepRequest& request, const PairStiffness& stiffnes
   step_.contacts = &contacts;
   step_.substeps = request.substeps;
   step_.h = step_.duration / step_.substeps;
-  step_.stiffness = stiffness;
   movers_.begin();
   rows_.gap0.resize(contacts.size());
   for (std::size_t k = 0; k < contacts.size(); ++k)
@@ -43,10 +46,24 @@ void SoftSolver::arrange()
   sweeps_.setStrips();
 }
 
-void SoftSolver::solve()
+void SoftSolver::goOn(const EndDetectionOutcome& seen)
 {
-  movers_.start();
-  this->run();
+  seen_ = seen;
+  movers_.noteDetection();
+  // Rows of what is found at the end are those of a straight way back.
+  const bool cut = accept_ != Accept::Any && seen.missed > kCutMiss;
+  looking_ = seen.any() && !cut;
+  if (looking_)
+  {
+    this->append();
+    looking_ = !seen.onlyTells(look_);
+    if (looking_)
+    {
+      movers_.start();
+      this->run();
+    }
+  }
+  ++look_;
 }
 
 void SoftSolver::run()
@@ -344,13 +361,13 @@ void SoftSolver::append()
   this->arrange();
 }
 
-IslandOutcome SoftSolver::finish(Accept accept, bool deep)
+IslandOutcome SoftSolver::finish()
 {
   IslandOutcome outcome;
-  deep = deep || writer_.isDeep();
+  const bool deep = seen_.isDeep() || writer_.isDeep();
   outcome.settled = !deep;
   outcome.iterations = step_.substeps;
-  outcome.accepted = !deep || accept == Accept::Any;
+  outcome.accepted = !deep || accept_ == Accept::Any;
   if (outcome.accepted)
   {
     writer_.write(outcome);

@@ -1,7 +1,17 @@
 #pragma once
 
 /// @file
-/// A step of rocks that touch each other as soft rows in substeps.
+/// A step of rocks that touch each other, whatever their number, as soft rows in substeps: bodies
+/// and contacts in, their motion and forces out.
+///
+///     solver.begin(request, accept, bodies, contacts);
+///     while (solver.asksForALook())
+///     {
+///       // end(), gap(), force(): where the bodies would be
+///       // contacts.push_back(), setGap(), setAbsent(): what was not reckoned with
+///       solver.goOn(seen);
+///     }
+///     outcome = solver.finish();
 ///
 /// A contact is a row: a spring pₙ that is damped more than critically, implicit (Macklin et al.
 /// 2019, small steps; Catto 2023, soft step), in n substeps of h = Δt/n. Its gap goes on linearly
@@ -48,18 +58,27 @@ public:
   SoftSolver(const SoftSolver&) = delete; // its parts know each other
   SoftSolver& operator=(const SoftSolver&) = delete;
 
+  /// Of contacts that come without springs (IslandContact::bare).
+  void setStiffness(const PairStiffness& stiffness) { step_.stiffness = stiffness; }
   /// Sets the rows up and solves them. Bodies and contacts stay where they are until `finish`.
-  void begin(const StepRequest& request, const PairStiffness& stiffness,
-    std::vector<IslandBody>& bodies, std::vector<IslandContact>& contacts);
-  /// Takes up what a look has found: contacts behind those that are known, whose `distance` is that
-  /// at the end, the rest of them as all stands at the start.
-  void append();
-  /// The bodies have been looked at where they are now.
-  void noteDetection() { movers_.noteDetection(); }
-  void solve(); ///< Again.
-  /// Writes bodies and contacts if the solution is accepted. `deep`: the last look found rocks deep
-  /// in each other.
-  IslandOutcome finish(Accept accept, bool deep);
+  void begin(const StepRequest& request, Accept accept, std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts);
+  /// Whether it is worth a look where the bodies would be.
+  bool asksForALook() const { return looking_ && seen_.asksFor(look_); }
+  /// Goes on from where it is with what a look has found: contacts behind those that are known,
+  /// whose `distance` is that at the end, the rest of them as all stands at the start.
+  void goOn(const EndDetectionOutcome& seen);
+  /// Advances the bodies' states and the contacts by `request.duration`. If the step has not
+  /// settled nothing is changed, unless `accept` says so.
+  IslandOutcome finish();
+  /// All of it, without a look.
+  IslandOutcome step(const StepRequest& request, std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts, Accept accept)
+  {
+    this->begin(request, accept, bodies, contacts);
+    return this->finish();
+  }
+  SoftSolver& rows() { return *this; } ///< Its side that a look asks and tells.
 
   // What the solution says, by numbers of bodies and contacts.
   BlockState end(std::size_t body) const { return movers_.end(body); } ///< At the end of the step.
@@ -74,6 +93,7 @@ public:
 
 private:
   void arrange(); ///< All parts as the rows are now.
+  void append();  ///< Takes up contacts that a look has found.
   void run();     ///< All substeps, from where the movers start.
   void substep(int k);
   void updateGaps(std::size_t strip);          ///< Gaps, books and who strikes.
@@ -91,7 +111,11 @@ private:
   bool relax(soft::ContactRow& row);
   void bookForces(std::size_t strip); ///< The work of impulses behind impacts.
 
-  soft::Step step_;                   ///< As asked.
+  soft::Step step_; ///< As asked.
+  Accept accept_ = Accept::Settled;
+  EndDetectionOutcome seen_;          ///< By the last look.
+  int look_ = 0;                      ///< Number of the next look.
+  bool looking_ = false;              ///< The last look has left something to solve for.
   soft::Movers movers_{ step_ };      ///< The rocks.
   soft::Rows rows_{ step_, movers_ }; ///< Their contacts.
   soft::Sweeps sweeps_{ rows_ };      ///< Which rows are swept over.

@@ -58,7 +58,7 @@ struct IslandContact
   }
 };
 
-/// Result of a look at where a step would end (IslandSolver).
+/// Result of a look at where a step would end (SoftSolver).
 struct EndDetectionOutcome
 {
   double missed = 0.0; ///< Deepest overlap without a contact, of a radius; 0: none.

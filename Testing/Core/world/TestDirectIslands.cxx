@@ -6,7 +6,7 @@
 #include "form.h"
 #include "piles.h"
 #include "randomScenes.h"
-#include "solve/island/IslandSolver.h"
+#include "solve/island/SoftSolver.h"
 
 #include <gtest/gtest.h>
 
@@ -117,7 +117,7 @@ bool stepSoftly(DirectIsland& island, double duration)
     asked[k].resting = kRestingSpeed * std::sqrt(island.gravity * radius);
     asked[k].closed = touch.contact.closed();
   }
-  IslandSolver().step(lastingStep(duration, island.gravity), bodies, asked, Accept::Any);
+  SoftSolver().step(lastingStep(duration, island.gravity), bodies, asked, Accept::Any);
   bool struck = false;
   for (std::size_t k = 0; k < asked.size(); ++k)
   {

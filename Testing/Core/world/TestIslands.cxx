@@ -2,7 +2,7 @@
 
 #include "form.h"
 #include "piles.h"
-#include "solve/island/IslandSolver.h"
+#include "solve/island/SoftSolver.h"
 
 #include <tbb/global_control.h>
 
@@ -288,7 +288,7 @@ TEST(Islands, SlabThatSpinsKeepsEnergyAndMomentum)
   state.spin = 20.0 * Vec3(1, 1, 1).normalized();
   const double energy = rigidKineticEnergy(block, state);
   const Vec3 momentum = angularMomentum(block, state);
-  IslandSolver solver;
+  SoftSolver solver;
   const StepRequest request = lastingStep(0.005, 0.0);
   std::vector<IslandContact> contacts;
   for (int step = 0; step < 200; ++step)

@@ -5,7 +5,7 @@
 #include "law/settings.h"
 #include "piles.h"
 #include "rock/placement.h"
-#include "solve/island/IslandSolver.h"
+#include "solve/island/SoftSolver.h"
 
 #include <gtest/gtest.h>
 
@@ -126,7 +126,7 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
       bodies[i].block = &block;
       bodies[i].state = &states[i];
     }
-    IslandSolver solver;
+    SoftSolver solver;
     const StepRequest request = lastingStep(1e-3, 0.0);
     for (int step = 0; step < 2; ++step)
     {
@@ -179,7 +179,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
     }
     const double stored = touches[0].springEnergy();
     EXPECT_NEAR(contacts[0].reboundSpeed, std::sqrt(2.0 * stored / stone.mass()), 1e-3);
-    IslandSolver solver;
+    SoftSolver solver;
     const StepRequest request = lastingStep(h, 0.0);
     solver.step(request, bodies, contacts, Accept::Any);
     const double moving =
@@ -212,7 +212,7 @@ TEST(Pinched, StepThatMissesDeeplyIsCut)
       std::vector<IslandBody> bodies(1);
       bodies[0].block = &block;
       bodies[0].state = &state;
-      IslandSolver solver;
+      SoftSolver solver;
       solver.begin(lastingStep(1e-3, 0.0), accept, bodies, contacts);
       ASSERT_TRUE(solver.asksForALook());
       EndDetectionOutcome seen;

@@ -3,7 +3,7 @@
 #include "form.h"
 #include "piles.h"
 #include "rock/placement.h"
-#include "solve/island/IslandSolver.h"
+#include "solve/island/SoftSolver.h"
 
 #include <gtest/gtest.h>
 
@@ -252,7 +252,7 @@ TEST(Splinters, BounceMakesNoEnergy)
       bodies[i].state = &states[i];
       energy -= rigidKineticEnergy(blocks[i], states[i]);
     }
-    IslandSolver solver;
+    SoftSolver solver;
     const StepRequest request = lastingStep(1e-4, 0.0); // so short that nothing turns
     solver.step(request, bodies, contacts, Accept::Any);
     for (std::size_t i = 0; i < bodies.size(); ++i)

@@ -4,7 +4,7 @@
 #include "law/settings.h"
 #include "piles.h"
 #include "randomScenes.h"
-#include "solve/island/IslandSolver.h"
+#include "solve/island/SoftSolver.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TEST(Unsettled, WhatEndsDeepIsNotTaken)
       std::vector<IslandBody> bodies(1);
       bodies[0].block = &block;
       bodies[0].state = &state;
-      IslandSolver solver;
+      SoftSolver solver;
       solver.begin(lastingStep(0.005, 0.0), accept, bodies, contacts);
       EndDetectionOutcome seen;
       seen.passed = (deep ? 2.0 : 0.5) * kDeepMiss;
