@@ -443,7 +443,6 @@ void BlockStep<N>::write(const VecN& d, std::vector<Contact>& contacts, StepOutc
     outcome.dampedWork += law.dampedWork();
     if (law.gap1 < 0.0)
     {
-      outcome.anyClosed = true;
       c.state = law.state == ContactState::Open ? ContactState::Sliding : law.state;
       c.slip = rotation_ * Vec3(row.tangent[0] * law.slip1[0] + row.tangent[1] * law.slip1[1]);
       outcome.normalEnergy += law.normalEnergy();

@@ -60,7 +60,6 @@ struct StepOutcome
   double dampedWork = 0.0;   ///< Dissipated by the normal dashpots, J, ≥ 0.
   double springEnergy = 0.0; ///< In the contact springs at the end, J.
   double normalEnergy = 0.0; ///< The part of it in the normal springs, J.
-  bool anyClosed = false;
 };
 
 /// The step for N unknowns per block: 12, or 6 without strain. Holds the work space, so that a step
