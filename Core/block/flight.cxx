@@ -39,6 +39,19 @@ double flightLength(double duration, const Vec3& from, const Vec3& to)
   return duration * mean;
 }
 
+BlockState between(const BlockState& from, const BlockState& to, double s)
+{
+  const double h = to.time - from.time, s2 = s * s, s3 = s2 * s;
+  BlockState at = to;
+  at.time = from.time + s * h;
+  at.position = (2 * s3 - 3 * s2 + 1) * from.position + (s3 - 2 * s2 + s) * h * from.velocity +
+    (3 * s2 - 2 * s3) * to.position + (s3 - s2) * h * to.velocity;
+  at.velocity = (1.0 - s) * from.velocity + s * to.velocity;
+  at.spin = (1.0 - s) * from.spin + s * to.spin;
+  at.orientation = from.orientation.slerp(s, to.orientation);
+  return at;
+}
+
 BlockState fly(const Block& block, const BlockState& state, double gravity, double duration)
 {
   BlockState next = state;

@@ -2,7 +2,7 @@
 
 /// @file
 /// Free flight: the motion between contacts, without steps (DESIGN: flight is not stepped where
-/// nothing can be touched).
+/// nothing can be touched). And places on the way of a step.
 
 #include "block/Block.h"
 
@@ -18,5 +18,7 @@ Vec3 placeInFlight(const BlockState& state, double gravity, double duration);
 /// Way of a flight of this time (s) between two velocities, m: within 0.1 % of the parabola's
 /// length.
 double flightLength(double duration, const Vec3& from, const Vec3& to);
+/// At the share s of a step of contact: cubic in place, linear in velocity.
+BlockState between(const BlockState& from, const BlockState& to, double s);
 
 } // namespace rockfall

@@ -274,13 +274,8 @@ void StepResult::applyToRock(std::size_t k)
   }
   work_.count(sim);
   const IslandBody& answer = work_.bodies[place];
-  StepOutcome outcome;
-  outcome.frictionWork = answer.frictionWork;
-  outcome.dampedWork = answer.dampedWork;
-  outcome.springEnergy = answer.springEnergy;
-  outcome.normalEnergy = answer.normalEnergy;
   commitStep(
-    sim.fall(), StepKind::Lasting, outcome, work_.energyBefore[place], answer.given, false);
+    sim.fall(), StepKind::Lasting, answer.onSlope, work_.energyBefore[place], answer.given, false);
   const bool carried = work_.touchesOthers[place] || anyClosed(body.contacts);
   // Some contact of an island opens or closes in every step, and the acceleration of one step says
   // little of the next: carried on it would keep a pile in motion for ever.

@@ -1,5 +1,6 @@
 #include "rock/fall/atStructures.h"
 
+#include "block/flight.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "rock/fall/Fall.h"

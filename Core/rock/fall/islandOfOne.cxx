@@ -113,12 +113,7 @@ void stepAsIsland(Fall& fall, double h)
   }
   ++summary.contactSteps;
   summary.unsettledSteps += !solved.settled;
-  StepOutcome outcome;
-  outcome.frictionWork = work.bodies[0].frictionWork;
-  outcome.dampedWork = work.bodies[0].dampedWork;
-  outcome.springEnergy = work.bodies[0].springEnergy;
-  outcome.normalEnergy = work.bodies[0].normalEnergy;
-  commitStep(fall, StepKind::Lasting, outcome, energyBefore, 0.0, false);
+  commitStep(fall, StepKind::Lasting, work.bodies[0].onSlope, energyBefore, 0.0, false);
   body.acceleration.setZero();
   body.spinAcceleration.setZero();
 }

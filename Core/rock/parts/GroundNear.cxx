@@ -1,6 +1,7 @@
 #include "rock/parts/GroundNear.h"
 
 #include "block/cayley.h"
+#include "block/flight.h"
 #include "contact/ground/clearance.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
@@ -64,14 +65,11 @@ double GroundNear::timeToGround(const RockBody& body, double duration)
 
 bool GroundNear::clearFor(const RockBody& body, double duration) const
 {
-  const double r = body.block.radius();
-  const Vec3& p = body.state.position;
-  const Vec3 end = p + duration * body.state.velocity;
-  const double zEnd = end.z() - 0.5 * gravity_ * duration * duration;
   // The parabola is concave: its lowest point is at one of its ends.
-  const double lowest = std::min(p.z(), zEnd) - r;
-  return surface_.maxHeight(std::min(p.x(), end.x()) - r, std::max(p.x(), end.x()) + r,
-           std::min(p.y(), end.y()) - r, std::max(p.y(), end.y()) + r) < lowest;
+  const double end = placeInFlight(body.state, gravity_, duration).z();
+  const double lowest = std::min(body.state.position.z(), end) - body.block.radius();
+  const auto [x0, x1, y0, y1] = this->boxOfWay(body, duration);
+  return surface_.maxHeight(x0, x1, y0, y1) < lowest;
 }
 
 void GroundNear::ensurePatch(const RockBody& body, const StructuresOnWay& structures, double margin)

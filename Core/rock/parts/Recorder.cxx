@@ -240,17 +240,9 @@ void Recorder::recordBetween(
   const double h = to.time - from.time;
   while (this->nextTime() <= to.time && h > 0.0)
   {
-    const double s = std::clamp((this->nextTime() - from.time) / h, 0.0, 1.0);
-    const double s2 = s * s, s3 = s2 * s;
-    BlockState between = to;
-    between.time = this->nextTime();
-    between.position = (2 * s3 - 3 * s2 + 1) * from.position +
-      (s3 - 2 * s2 + s) * h * from.velocity + (3 * s2 - 2 * s3) * to.position +
-      (s3 - s2) * h * to.velocity;
-    between.velocity = (1.0 - s) * from.velocity + s * to.velocity;
-    between.spin = (1.0 - s) * from.spin + s * to.spin;
-    between.orientation = from.orientation.slerp(s, to.orientation);
-    this->addEven(between, contact);
+    BlockState at = between(from, to, std::clamp((this->nextTime() - from.time) / h, 0.0, 1.0));
+    at.time = this->nextTime();
+    this->addEven(at, contact);
   }
   if (!even && !this->follows(to))
   {

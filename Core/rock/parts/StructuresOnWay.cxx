@@ -17,19 +17,6 @@
 namespace rockfall
 {
 
-BlockState between(const BlockState& from, const BlockState& to, double s)
-{
-  const double h = to.time - from.time, s2 = s * s, s3 = s2 * s;
-  BlockState at = to;
-  at.time = from.time + s * h;
-  at.position = (2 * s3 - 3 * s2 + 1) * from.position + (s3 - 2 * s2 + s) * h * from.velocity +
-    (3 * s2 - 2 * s3) * to.position + (s3 - s2) * h * to.velocity;
-  at.velocity = (1.0 - s) * from.velocity + s * to.velocity;
-  at.spin = (1.0 - s) * from.spin + s * to.spin;
-  at.orientation = from.orientation.slerp(s, to.orientation);
-  return at;
-}
-
 void slowDown(BlockState& state, double energy, double taken)
 {
   const double factor = energy > 0.0 ? std::sqrt(std::max(0.0, 1.0 - taken / energy)) : 0.0;
@@ -255,8 +242,7 @@ bool StructuresOnWay::breakTrees(
     {
       continue;
     }
-    const double approach =
-      -c.normal.dot(body.state.velocity + spin.cross(c.point - body.state.position));
+    const double approach = approachOf(body.state, spin, c.point, c.normal);
     const bool meets =
       c.closed() ? approach > body.restingSpeed : approach > 0.0 && c.gap() < approach * h;
     if (!(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()) ||

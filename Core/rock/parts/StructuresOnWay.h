@@ -39,8 +39,6 @@ struct BarrierHit
   double stored = 0.0; ///< In contact springs at the time, J.
 };
 
-/// Within a step of contact: cubic in place, linear in velocity.
-BlockState between(const BlockState& from, const BlockState& to, double s);
 /// Takes kinetic energy: all velocities become smaller by the same factor.
 void slowDown(BlockState& state, double energy, double taken);
 /// Outcome for a structure where the rock is `at`, with this energy (J) and its centre this high

@@ -8,6 +8,7 @@
 #include "law/restitution.h"
 #include "law/settings.h"
 #include "law/springs.h"
+#include "solve/step/StepSolver.h"
 
 #include <algorithm>
 #include <vector>
@@ -22,9 +23,8 @@ struct IslandBody
 {
   const Block* block = nullptr;
   BlockState* state = nullptr;
-  double given = 0.0; ///< Out: work that this rock did on other rocks in the step, J.
-  double frictionWork = 0.0, dampedWork = 0.0;   ///< Out: on the slope, J.
-  double springEnergy = 0.0, normalEnergy = 0.0; ///< Out: of its contacts with the slope, J.
+  double given = 0.0;  ///< Out: work that this rock did on other rocks in the step, J.
+  StepOutcome onSlope; ///< Out: books of its contacts with the slope.
 };
 
 struct IslandContact

@@ -29,8 +29,8 @@ void Writer::write(IslandOutcome& outcome)
   books_.assign(movers_.size(), { 0.0, 0.0, 0.0, 0.0, rows_.rows.size() });
   for (IslandBody& body : *step_.bodies)
   {
-    body.given = body.frictionWork = body.dampedWork = 0.0;
-    body.springEnergy = body.normalEnergy = 0.0;
+    body.given = 0.0;
+    body.onSlope = {};
   }
   for (const IslandContact& asked : *step_.contacts)
   {
@@ -121,12 +121,12 @@ void Writer::bookContacts(IslandOutcome& outcome)
       continue;
     }
     const Contact& c = *asked.contact;
-    IslandBody& body = (*step_.bodies)[std::size_t(r.a)];
+    StepOutcome& onSlope = (*step_.bodies)[std::size_t(r.a)].onSlope;
     const double energy = c.springEnergy();
     books_[std::size_t(r.a)].slope += work;
-    body.frictionWork += result.frictionWork;
-    body.springEnergy += energy;
-    body.normalEnergy +=
+    onSlope.frictionWork += result.frictionWork;
+    onSlope.springEnergy += energy;
+    onSlope.normalEnergy +=
       energy - (c.closed() ? 0.5 * c.shearStiffness * c.slip.squaredNorm() : 0.0);
   }
 }
@@ -158,7 +158,8 @@ void Writer::writeBody(std::size_t i)
     }
   }
   body.given = -books.rocks;
-  body.dampedWork = -books.slope - body.frictionWork + books.held - body.springEnergy;
+  body.onSlope.dampedWork =
+    -books.slope - body.onSlope.frictionWork + books.held - body.onSlope.springEnergy;
   *body.state = end;
   body.state->time += step_.duration;
 }
