@@ -21,6 +21,12 @@ struct FlatBox
 {
   double xMin = 0.0, xMax = -1.0, yMin = 0.0, yMax = -1.0; ///< m
   double top = 0.0;                                        ///< m
+
+  /// Whether the two have a place in plan in common.
+  bool meets(double x0, double x1, double y0, double y1) const
+  {
+    return xMax >= x0 && xMin <= x1 && yMax >= y0 && yMin <= y1;
+  }
 };
 
 /// Immutable; a query costs what it finds.

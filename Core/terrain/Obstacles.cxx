@@ -149,11 +149,9 @@ void ObstacleMesh::connect(std::size_t from)
         ++back;
       }
       const int a = t.nodes[k], b = t.nodes[(k + 1) % 3], wing = other.nodes[(back + 2) % 3];
-      const Vec3 arm = nodes[wing].position - nodes[a].position;
-      const double drop = -t.normal.dot(arm);
-      const bool flat = drop * drop <= kFlatBend * kFlatBend * arm.squaredNorm();
-      t.bends[k] = other.bends[back] = flat ? 0 : (drop > 0.0 ? 1 : -1);
-      if (flat)
+      t.bends[k] = other.bends[back] =
+        SurfacePatch::bendOf(t.normal, nodes[wing].position - nodes[a].position);
+      if (t.bends[k] == 0)
       {
         continue;
       }
@@ -350,18 +348,6 @@ FlatBox Obstacles::treeBox(int tree) const
     this->treeTop(tree) };
 }
 
-bool Obstacles::isTreeIn(int tree, double xMin, double xMax, double yMin, double yMax) const
-{
-  if (this->lyingOf(tree))
-  {
-    const FlatBox b = this->treeBox(tree);
-    return b.xMax >= xMin && b.xMin <= xMax && b.yMax >= yMin && b.yMin <= yMax;
-  }
-  const Eigen::Vector2d& p = structures_.trees[std::size_t(tree)].position;
-  const double r = this->treeRadius(tree);
-  return p.x() + r >= xMin && p.x() - r <= xMax && p.y() + r >= yMin && p.y() - r <= yMax;
-}
-
 bool Obstacles::isInTree(int tree, const Vec3& place) const
 {
   if (const LyingStem* stem = this->lyingOf(tree))
@@ -448,8 +434,7 @@ void Obstacles::append(double xMin, double xMax, double yMin, double yMax,
   this->visitTriangles(xMin, xMax, yMin, yMax,
     [&](int k)
     {
-      const FlatBox b = boxOf(mesh_, mesh_.triangles[std::size_t(k)]);
-      if (b.xMax >= xMin && b.xMin <= xMax && b.yMax >= yMin && b.yMin <= yMax)
+      if (boxOf(mesh_, mesh_.triangles[std::size_t(k)]).meets(xMin, xMax, yMin, yMax))
       {
         triangles.push_back(k);
       }
@@ -457,7 +442,7 @@ void Obstacles::append(double xMin, double xMax, double yMin, double yMax,
   this->visitTrees(xMin, xMax, yMin, yMax,
     [&](int k)
     {
-      if (this->isTreeIn(k, xMin, xMax, yMin, yMax) &&
+      if (this->treeBox(k).meets(xMin, xMax, yMin, yMax) &&
         !std::binary_search(gone.begin(), gone.end(), k))
       {
         trees.push_back(k);

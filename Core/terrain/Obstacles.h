@@ -101,8 +101,6 @@ public:
   bool isInTree(int tree, const Vec3& place) const;
   /// What it takes up in plan, and its top.
   FlatBox treeBox(int tree) const;
-  /// Whether it does so within a box.
-  bool isTreeIn(int tree, double xMin, double xMax, double yMin, double yMax) const;
 
   /// CFEs of obstacles have numbers beyond the slope's: first the embankments', then the trees'.
   std::int64_t firstCfe() const { return firstCfe_; }

@@ -335,14 +335,9 @@ std::vector<Rim> findRidges(SurfacePatch& patch)
         continue;
       }
       const int wing = other.nodes[(back + 2) % 3];
-      // Depth of the other triangle's wing below this plane, per its distance.
-      const Vec3 arm = patch.nodes[wing].position - patch.nodes[t.nodes[k]].position;
-      const double drop = -t.normal.dot(arm);
-      const bool flat = drop * drop <= kFlatBend * kFlatBend * arm.squaredNorm();
-      const signed char sign = flat ? 0 : (drop > 0.0 ? 1 : -1);
-      t.bends[k] = sign;
-      other.bends[back] = sign;
-      if (sign > 0)
+      t.bends[k] = other.bends[back] = SurfacePatch::bendOf(
+        t.normal, patch.nodes[wing].position - patch.nodes[t.nodes[k]].position);
+      if (t.bends[k] > 0)
       {
         patch.triangles[cell].ridges[edge] = int(patch.ridges.size());
         patch.ridges.push_back({ { t.nodes[k], t.nodes[(k + 1) % 3] }, { i, j },

@@ -4,6 +4,7 @@
 /// The slope as one realisation sees it, and the small explicit piece of it under a rock.
 
 #include "base/random.h"
+#include "law/settings.h"
 #include "terrain/Terrain.h"
 #include "terrain/scatter.h"
 
@@ -186,6 +187,15 @@ struct SurfacePatch
       { { 2, 1, 4 }, { 0, 2, 5 } } };
     const std::int64_t upper = triangle.key & 1;
     return 3 * (triangle.key - upper) + numbers[triangle.rising][upper][std::size_t(side)];
+  }
+
+  /// Sign of the bend across a side of a triangle with this normal, as in Triangle::bends. `arm`:
+  /// from the side to the other triangle's third node, m.
+  static signed char bendOf(const Vec3& normal, const Vec3& arm)
+  {
+    const double drop = -normal.dot(arm);
+    const bool flat = drop * drop <= kFlatBend * kFlatBend * arm.squaredNorm();
+    return flat ? 0 : (drop > 0.0 ? 1 : -1);
   }
 
   /// How many of each are the slope's; those of walls under rims follow, then those of obstacles.

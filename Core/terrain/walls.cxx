@@ -145,12 +145,10 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
     const int i = t.neighbours[rim.side] + 1, j = t1.neighbours[next.side];
     SurfacePatch::Triangle& one = patch.triangles[i];
     SurfacePatch::Triangle& other = patch.triangles[j];
-    const Vec3 arm = patch.nodes[c].position - patch.nodes[b].position;
-    const double drop = -one.normal.dot(arm);
-    const bool flat = drop * drop <= kFlatBend * kFlatBend * arm.squaredNorm();
     one.neighbours[2] = j;
     other.neighbours[0] = i;
-    one.bends[2] = other.bends[0] = flat ? 0 : (drop > 0.0 ? 1 : -1);
+    one.bends[2] = other.bends[0] =
+      SurfacePatch::bendOf(one.normal, patch.nodes[c].position - patch.nodes[b].position);
     if (one.bends[2] > 0)
     {
       patch.ridges.push_back({ { b, bottoms[b] }, { i, j }, { a, c },

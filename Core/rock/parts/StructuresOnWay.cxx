@@ -319,7 +319,7 @@ bool StructuresOnWay::apply(const Broken& broken, const SurfacePatch& patch)
       continue;
     }
     goneTrees_.insert(at, tree);
-    near = near || obstacles_->isTreeIn(tree, patch.xMin, patch.xMax, patch.yMin, patch.yMax);
+    near = near || obstacles_->treeBox(tree).meets(patch.xMin, patch.xMax, patch.yMin, patch.yMax);
   }
   return near;
 }
