@@ -453,15 +453,4 @@ const std::vector<Passage>& HazardRaster::sorted()
   return passages_;
 }
 
-void HazardRaster::summarize(const UseCell& use)
-{
-  CellSummarizer summarizer(releasedIn_, use);
-  for (const Passage& passage : this->sorted())
-  {
-    stayWanted();
-    summarizer.add(passage);
-  }
-  summarizer.finish();
-}
-
 } // namespace rockfall

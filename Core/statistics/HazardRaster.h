@@ -42,10 +42,6 @@ public:
   void merge(const HazardRaster& other);
 
   std::int64_t released() const { return released_; }
-  /// Calls `use` for each cell that anything passed, in the order of cells. Throws DataError if a
-  /// rock was added twice for an iteration.
-  void summarize(const UseCell& use);
-
   /// All passages in their order.
   const std::vector<Passage>& sorted();
   const Releases& releases() const { return releasedIn_; }

@@ -361,13 +361,6 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
   notes_ = askAfterRuns(runs, [this](std::size_t k) { return files_[k].fileName; });
 }
 
-void PassageFiles::summarize(const UseCell& use) const
-{
-  CellSummarizer summarizer(releases_, use);
-  this->forEach([&summarizer](const Passage& passage) { summarizer.add(passage); });
-  summarizer.finish();
-}
-
 void PassageFiles::forEach(const std::function<void(const Passage&)>& use) const
 {
   std::vector<PassageStream> streams(files_.begin(), files_.end());

@@ -83,10 +83,8 @@ public:
   /// On files whose runs differ from the first.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Merges the files on the way, with 64 MB of memory for all of them. Throws FileError, or
-  /// DataError if a rock is there twice for an iteration.
-  void summarize(const UseCell& use) const;
-  /// All passages in their order, as they are.
+  /// All passages in their order, as they are. Merges the files on the way, with 64 MB of memory for
+  /// all of them. Throws FileError.
   void forEach(const std::function<void(const Passage&)>& use) const;
 
 private:

@@ -49,24 +49,15 @@ public:
   double time() const { return world_.time; }
   int rocks() const { return int(world_.rocks.size()); }
   const BlockState& state(int rock) const { return this->rock(rock).state(); }
-  // Of a rock, so far.
-  const std::vector<ImpactEvent>& impacts(int rock) const
-  {
-    return this->rock(rock).trajectory().impacts;
-  }
-  const TrajectorySummary& summary(int rock) const { return this->rock(rock).trajectory().summary; }
+  /// As it is so far.
+  const SingleRock& rock(int rock) const { return world_.rocks[std::size_t(rock)].sim; }
   /// Pairs near each other whose axis was ever looked for, by (first, second).
   std::vector<const RockPair*> pairs() const;
-  std::span<const Contact> slopeContacts(int rock) const
-  {
-    return this->rock(rock).body().contacts;
-  }
 
   /// Rocks never sleep: for tests of how still a pile stands.
   bool awake = false;
 
 private:
-  const SingleRock& rock(int rock) const { return world_.rocks[std::size_t(rock)].sim; }
   void step(double until);
   void advanceAll(double until); ///< Islands, and rocks that meet no other, on all threads.
   void shareBroken();            ///< And what barriers have held.

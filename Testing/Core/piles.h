@@ -180,7 +180,7 @@ struct Pile
     for (int i = 0; i < fall->rocks(); ++i)
     {
       weight += blocks[i].mass() * parameters.gravity;
-      for (const Contact& c : fall->slopeContacts(i))
+      for (const Contact& c : fall->rock(i).body().contacts)
       {
         force += c.normalForce * c.normal.z();
       }

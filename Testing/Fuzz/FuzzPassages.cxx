@@ -9,14 +9,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string name = temporaryFile(data, size);
   try
   {
-    rockfall::PassageFiles({ name }).summarize(
-      [](const rockfall::CellSummary& cell)
+    const rockfall::PassageFiles files({ name });
+    const rockfall::UseCell look = [](const rockfall::CellSummary& cell)
+    {
+      if (!(cell.reach >= 0.0 && cell.reach <= 1.0) || cell.passages < 1)
       {
-        if (!(cell.reach >= 0.0 && cell.reach <= 1.0) || cell.passages < 1)
-        {
-          __builtin_trap(); // no probability
-        }
-      });
+        __builtin_trap(); // no probability
+      }
+    };
+    rockfall::CellSummarizer summarizer(files.releases(), look);
+    files.forEach([&summarizer](const rockfall::Passage& passage) { summarizer.add(passage); });
+    summarizer.finish();
   }
   catch (const rockfall::Error&)
   {

@@ -3,6 +3,7 @@
 
 #include "verification.h"
 
+#include "bruteForce.h"
 #include "contact/ground/detection.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@
 #include <cmath>
 
 using namespace rockfall;
+using namespace rockfall::testing;
 using namespace rockfall::verification;
 
 namespace

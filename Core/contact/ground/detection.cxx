@@ -87,7 +87,8 @@ double besideTriangle(const SurfacePatch& patch, int triangle, const Vec3& point
   return 0.0;
 }
 
-/// Adds an entrance unless the contacts that are already there stand for it.
+} // namespace
+
 void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Contact>& contacts)
 {
   for (const Contact& c : contacts)
@@ -134,6 +135,9 @@ void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Cont
   contacts.push_back(candidate);
   contacts.back().offset = std::min(0.0, candidate.distance);
 }
+
+namespace
+{
 
 /// Admits the other sides of the valleys in whose bottom a vertex is pressed: it is beside them,
 /// seen square to them, and each step would leave it to go deeper under the one or the other.
@@ -276,42 +280,6 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
     }
   }
   findOtherSides(rock, patch, reach, contacts);
-}
-
-void findEntrancesBruteForce(
-  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts)
-{
-  const Polyhedron& shape = rock.block().shape();
-  for (int i = 0; i < int(patch.triangles.size()); ++i)
-  {
-    for (int v = 0; v < int(rock.vertices().size()) && patch.triangles[i].cfe != 0; ++v)
-    {
-      if (auto c = vertexFace(rock, v, patch, i, reach))
-      {
-        admit(patch, *c, contacts);
-      }
-    }
-  }
-  for (int i = 0; i < int(patch.nodes.size()); ++i)
-  {
-    for (int f = 0; f < int(shape.faces().size()); ++f)
-    {
-      if (auto c = faceVertex(rock, f, patch, i, reach))
-      {
-        admit(patch, *c, contacts);
-      }
-    }
-  }
-  for (int i = 0; i < int(patch.ridges.size()); ++i)
-  {
-    for (int e = 0; e < int(shape.edges().size()); ++e)
-    {
-      if (auto c = edgeEdge(rock, e, patch, i, reach))
-      {
-        admit(patch, *c, contacts);
-      }
-    }
-  }
 }
 
 } // namespace rockfall

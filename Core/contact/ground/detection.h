@@ -35,9 +35,8 @@ void guardPenetration(const PlacedBlock& rock, const SurfacePatch& patch,
 bool overlaps(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
   double allowed);
 
-/// The same entrance rules by brute force over all pairs, without pruning: the oracle of the tests.
-void findEntrancesBruteForce(
-  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts);
+/// Adds an entrance unless the contacts that are already there stand for it.
+void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Contact>& contacts);
 
 /// Deepest penetration of the rock's vertices under the slope of the patch and of its peaks into
 /// the rock, m, ≥ 0. Edges that cross and obstacles are not looked at.

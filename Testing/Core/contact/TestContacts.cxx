@@ -1,6 +1,7 @@
 // Contact detection (METHOD 3, 5, 10.5): the indexed, pruned search against brute force, flat
 // edges, clearance.
 
+#include "bruteForce.h"
 #include "contact/ground/clearance.h"
 #include "contact/ground/detection.h"
 #include "slopes.h"

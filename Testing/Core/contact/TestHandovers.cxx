@@ -101,8 +101,8 @@ TEST(Handovers, ImpactsOnTheSlopeUnderWayGoOnInAnIsland)
         EXPECT_GT(state.velocity.z(), 0.0);
         // Of a step of 5 ms: gravity is in it once.
         EXPECT_NEAR(up / speed, e, 0.01) << over << ' ' << int(model);
-        ASSERT_EQ(pile.fall->impacts(0).size(), 1u);
-        EXPECT_EQ(pile.fall->impacts(1).size(), 0u);
+        ASSERT_EQ(pile.fall->rock(0).trajectory().impacts.size(), 1u);
+        EXPECT_EQ(pile.fall->rock(1).trajectory().impacts.size(), 0u);
       }
     }
   }

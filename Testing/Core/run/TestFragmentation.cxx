@@ -11,6 +11,7 @@
 #include "slopes.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/crossings.h"
+#include "summarizePassages.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>
@@ -343,7 +344,7 @@ TEST(Fragmentation, ASourceCountsOnceInACell)
   EXPECT_EQ(raster.released(), 2);
   double largest = 0.0;
   int stops = 0;
-  raster.summarize(
+  summarize(raster,
     [&](const CellSummary& cell)
     {
       EXPECT_LE(cell.rocks, 2);

@@ -5,6 +5,7 @@
 
 #include "base/errors.h"
 #include "statistics/HazardRaster.h"
+#include "summarizePassages.h"
 #include "terrain/Terrain.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 #include <map>
 
 using namespace rockfall;
+using namespace rockfall::testing;
 using rockfall::testing::g;
 using rockfall::testing::hops;
 using rockfall::testing::rockPathOf;
@@ -27,7 +29,7 @@ constexpr int energy = int(Hazard::KineticEnergy), speed = int(Hazard::Speed),
 std::vector<CellSummary> cellsOf(HazardRaster& raster)
 {
   std::vector<CellSummary> cells;
-  raster.summarize([&cells](const CellSummary& cell) { cells.push_back(cell); });
+  summarize(raster, [&cells](const CellSummary& cell) { cells.push_back(cell); });
   return cells;
 }
 

@@ -7,6 +7,7 @@
 #include "gis/base/packing.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
+#include "summarizePassages.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,7 @@
 #include <fstream>
 
 using namespace rockfall;
+using namespace rockfall::testing;
 using rockfall::testing::wild;
 
 namespace
@@ -111,7 +113,7 @@ void expectError(const std::vector<std::string>& names, const char* word)
 {
   try
   {
-    PassageFiles(names).summarize([](const CellSummary&) {});
+    summarize(PassageFiles(names), [](const CellSummary&) {});
     ADD_FAILURE() << "no error: " << word;
   }
   catch (const Error& error)
@@ -134,7 +136,7 @@ protected:
 TEST_F(TestPassageFile, AnySharingOutGivesTheSameBits)
 {
   HazardRaster whole = rasterOf([](int) { return true; });
-  const auto expected = numbers([&](const UseCell& use) { whole.summarize(use); });
+  const auto expected = numbers([&](const UseCell& use) { summarize(whole, use); });
   ASSERT_GT(expected.size(), 100u * 37u);
   for (const int parts : { 1, 2, 7, 60 })
   {
@@ -156,7 +158,7 @@ TEST_F(TestPassageFile, AnySharingOutGivesTheSameBits)
     EXPECT_EQ(files.grid().south, 4000000.0);
     EXPECT_EQ(files.origin(), origin);
     EXPECT_EQ(files.crs(), "EPSG:32616");
-    EXPECT_TRUE(sameBits(numbers([&](const UseCell& use) { files.summarize(use); }), expected))
+    EXPECT_TRUE(sameBits(numbers([&](const UseCell& use) { summarize(files, use); }), expected))
       << parts;
   }
 }
@@ -194,7 +196,7 @@ TEST_F(TestPassageFile, ManyPassagesArePacked)
   EXPECT_EQ(all.released(), 10000);
   EXPECT_EQ(all.releases(), one.releases());
   const auto numbersOf = [](HazardRaster& raster)
-  { return numbers([&](const UseCell& use) { raster.summarize(use); }); };
+  { return numbers([&](const UseCell& use) { summarize(raster, use); }); };
   EXPECT_TRUE(sameBits(numbersOf(one), numbersOf(all)));
 
   const std::vector<Passage>& kept = all.sorted();
@@ -236,7 +238,7 @@ TEST_F(TestPassageFile, NothingPassed)
   writePassages(raster, origin, "", fileName("none"));
   const PassageFiles files({ fileName("none") });
   EXPECT_EQ(files.releases().at(0), 1);
-  files.summarize([](const CellSummary&) { ADD_FAILURE(); });
+  summarize(files, [](const CellSummary&) { ADD_FAILURE(); });
 }
 
 TEST_F(TestPassageFile, OtherRunsAndEndTimesAreTold)
@@ -351,7 +353,7 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   writePassages(raster, origin, "", bad);
   const std::string good = plain(bad);
   std::ofstream(bad, std::ios::binary) << good;
-  PassageFiles({ bad }).summarize([](const CellSummary&) {});
+  summarize(PassageFiles({ bad }), [](const CellSummary&) {});
   const auto put = [&](std::size_t at, auto value)
   {
     std::string bytes = good;

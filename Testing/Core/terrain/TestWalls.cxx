@@ -1,7 +1,7 @@
 // Where the ground ends at a hole of nodata it goes down in an upright wall: its rim carries what
 // stands over it as long as that is balanced, and nothing gets into the ground from the hole.
 
-#include "contact/ground/detection.h"
+#include "bruteForce.h"
 #include "form.h"
 #include "piles.h"
 #include "rock/placement.h"

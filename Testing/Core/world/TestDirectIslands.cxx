@@ -82,7 +82,7 @@ DirectIsland islandOf(const Pile& pile)
   }
   for (int i = 0; i < pile.fall->rocks(); ++i)
   {
-    for (const Contact& c : pile.fall->slopeContacts(i))
+    for (const Contact& c : pile.fall->rock(i).body().contacts)
     {
       add(i, -1, c, c.friction);
     }

@@ -80,7 +80,7 @@ TEST(Islands, ManyRocksKeepMomentumAndGainNothing)
   EXPECT_LT((p1 - p0).norm(), 1e-10 * size);
   EXPECT_LT((l1 - l0).norm(), 1e-10 * size * 5.0);
   EXPECT_LT(after, before);
-  EXPECT_GT(pile.fall->impacts(31).size(), 0u);
+  EXPECT_GT(pile.fall->rock(31).trajectory().impacts.size(), 0u);
 }
 
 TEST(Islands, ImpactsLoseWhatTheCoefficientOfRestitutionSays)
@@ -273,7 +273,7 @@ TEST(Islands, SleepersAreNotPushedIntoEachOther)
     deepest = std::max(deepest, pile.overlap());
   }
   EXPECT_TRUE(slept);
-  EXPECT_GT(pile.fall->impacts(5).size(), 0u);
+  EXPECT_GT(pile.fall->rock(5).trajectory().impacts.size(), 0u);
   // Cubes of 1 m whose springs give way by 11 m/s √(m/p) = 4 mm, the lowest ones by twice as much;
   // in a step the rock goes 55 mm.
   EXPECT_LT(deepest, 0.015);
@@ -442,11 +442,11 @@ TEST(Islands, OneSmallRockDoesNotSetTheStepsOfAll)
     std::vector<int> taken;
     while (pile.fall->time() < 0.05)
     {
-      const int before = int(pile.fall->summary(0).contactSteps);
+      const int before = int(pile.fall->rock(0).trajectory().summary.contactSteps);
       pile.fall->advance();
       if (pile.largestIsland() == cubes + 1)
       {
-        taken.push_back(int(pile.fall->summary(0).contactSteps) - before);
+        taken.push_back(int(pile.fall->rock(0).trajectory().summary.contactSteps) - before);
       }
     }
     EXPECT_FALSE(taken.empty());

@@ -142,8 +142,8 @@ TEST(IslandFinder, WhoTouchesNoneOfAGroupBouncesAsAlone)
     std::vector<Vec3> places = pile.places();
     for (int k = 0; k < count; ++k)
     {
-      EXPECT_GE(pile.fall->impacts(k).size(), 1u);
-      for (const ImpactEvent& event : pile.fall->impacts(k))
+      EXPECT_GE(pile.fall->rock(k).trajectory().impacts.size(), 1u);
+      for (const ImpactEvent& event : pile.fall->rock(k).trajectory().impacts)
       {
         EXPECT_EQ(event.otherRock, -1);
       }
@@ -297,7 +297,7 @@ TEST(IslandFinder, WhatLeantOnACaughtBoulderSlides)
   pile.awake = false;
   pile.start();
   pile.run(strikes + 0.01);
-  ASSERT_EQ(pile.fall->summary(1).fate, Fate::Caught);
+  ASSERT_EQ(pile.fall->rock(1).trajectory().summary.fate, Fate::Caught);
   const Vec3 held = pile.fall->state(0).position;
   pile.run(4.0);
   EXPECT_GT((pile.fall->state(0).position - held).norm(), 0.1);

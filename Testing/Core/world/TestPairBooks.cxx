@@ -141,7 +141,7 @@ TEST(PairBooks, RestMakesNoImpacts)
   pile.run(1.0);
   for (int i = 0; i < pile.fall->rocks(); ++i)
   {
-    EXPECT_EQ(pile.fall->impacts(i).size(), 0u) << i;
+    EXPECT_EQ(pile.fall->rock(i).trajectory().impacts.size(), 0u) << i;
   }
 }
 

@@ -87,7 +87,7 @@ Meeting meet(const std::vector<Rock>& rocks, double e, double friction)
   {
   }
   m.after = totalsOf(fall, blocks);
-  m.events = fall.impacts(0);
+  m.events = fall.rock(0).trajectory().impacts;
   return m;
 }
 
@@ -266,8 +266,8 @@ TEST(Pairs, EachPairOfMaterialsHasItsRestitution)
     const double loss = before - energyOf(2 * k) - energyOf(2 * k + 1);
     // What is left is the step that an impact is resolved in.
     EXPECT_NEAR(loss, expected, 0.01 * expected) << couples[k].first << " on " << couples[k].second;
-    ASSERT_EQ(fall.impacts(2 * k).size(), 1u);
-    EXPECT_EQ(fall.impacts(2 * k).front().restitution, e);
+    ASSERT_EQ(fall.rock(2 * k).trajectory().impacts.size(), 1u);
+    EXPECT_EQ(fall.rock(2 * k).trajectory().impacts.front().restitution, e);
   }
 }
 

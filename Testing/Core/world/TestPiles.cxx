@@ -49,7 +49,7 @@ TEST(Piles, ColumnOfTenStands)
     double stiffness = 0.0;
     if (i == 0)
     {
-      for (const Contact& c : pile.fall->slopeContacts(0))
+      for (const Contact& c : pile.fall->rock(0).body().contacts)
       {
         stiffness += c.stiffness;
       }

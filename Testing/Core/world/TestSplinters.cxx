@@ -134,7 +134,7 @@ TEST(Splinters, DoNotPassIntoEachOther)
           2, [&](int i) -> const Block& { return blocks[i]; },
           [&](int i) -> const BlockState& { return fall.state(i); }));
     }
-    met += !fall.impacts(0).empty();
+    met += !fall.rock(0).trajectory().impacts.empty();
     EXPECT_LT(deepest, 0.02 * std::min(blocks[0].radius(), blocks[1].radius())) << "case " << k;
   }
   EXPECT_GT(met, 100);
@@ -178,7 +178,7 @@ TEST(Splinters, WhatFliesIsOverTheSlope)
       goOn = pile.fall->advance();
       for (int k = 0; k < pile.fall->rocks(); ++k)
       {
-        if (!pile.fall->slopeContacts(k).empty())
+        if (!pile.fall->rock(k).body().contacts.empty())
         {
           continue;
         }
