@@ -1,7 +1,8 @@
+#include "contact/ground/candidates.h"
+
 #include "contact/ground/features.h"
 #include "contact/ground/motion.h"
 #include "contact/ground/roundContact.h"
-#include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 
 #include <algorithm>

@@ -65,4 +65,9 @@ struct CandidatePairs
 void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double distance, CandidatePairs& candidates);
 
+/// Lower bound of the time (s, at most `horizon`) in which a pair of them that is apart now can close
+/// in free flight. 0 where the rock overlaps the slope.
+double timeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double gravity, double horizon);
+
 } // namespace rockfall

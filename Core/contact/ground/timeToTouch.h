@@ -3,19 +3,15 @@
 /// @file
 /// How far a rock is from touching: lower bounds of the time in free flight.
 
-#include "contact/ground/candidates.h"
+#include "contact/PlacedBlock.h"
 #include "terrain/Obstacles.h"
+#include "terrain/Surface.h"
 
 #include <span>
 #include <vector>
 
 namespace rockfall
 {
-
-/// Lower bound of the time (s, at most `horizon`) in which a pair of the candidates that is apart
-/// now can close in free flight. 0 where the rock overlaps the slope.
-double timeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
-  const CandidatePairs& candidates, double gravity, double horizon);
 
 /// Lower bound of the time (s, at most `horizon`) to the first touch in free flight over the
 /// window, which must hold all that the rock can come over until then. For every place where the
