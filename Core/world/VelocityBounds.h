@@ -68,8 +68,4 @@ inline double closingSpeed(const IslandBounds& first, const VelocityBounds& firs
     : std::max(0.0, first.most(-normal, firstVelocities) + second.most(normal, secondVelocities));
 }
 
-/// How a rock may move within a duration (s) if no other strikes it.
-void boundVelocities(
-  const WorldState& world, const SingleRock& sim, double duration, VelocityBounds& velocities);
-
 } // namespace rockfall
