@@ -1,12 +1,9 @@
 #include "rock/fall/impulseImpacts.h"
 
-#include "base/abort.h"
-#include "block/FreeRotation.h"
-#include "block/flight.h"
 #include "contact/ground/heightOver.h"
-#include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "rock/fall/Fall.h"
+#include "rock/fall/TouchSearch.h"
 #include "rock/fall/flightPhase.h"
 #include "rock/restitution.h"
 #include "solve/step/impulse.h"
@@ -120,136 +117,54 @@ bool strike(Fall& fall, std::span<const StruckPoint> touches, bool carried)
   return true;
 }
 
+/// Where the rock touches the ground, or nearly so.
+std::vector<StruckPoint>& touchesNow(Fall& fall)
+{
+  thread_local std::vector<GroundPlace> places;
+  RockBody& body = fall.body;
+  body.placed.move(body.block, body.state);
+  findTouches(body.placed, fall.ground.window(), kSharedTouch * body.block.radius(), places);
+  std::vector<StruckPoint>& touches = touchSpace();
+  touches.clear();
+  const Terrain& terrain = fall.surface.terrain();
+  const double width = terrain.width(), height = terrain.height();
+  const double inset = 1e-9 * (width + height); // on the apron the ground is that of the edge
+  for (const GroundPlace& place : places)
+  {
+    const std::int64_t cfe = terrain.cfeAt(std::clamp(place.point.x(), inset, width - inset),
+      std::clamp(place.point.y(), inset, height - inset));
+    touches.push_back({ place.point, place.normal, cfe });
+  }
+  return touches;
+}
+
 } // namespace
 
 bool hop(Fall& fall, double duration)
 {
+  TouchSearch search(fall, duration);
+  const TouchSearch::Outcome outcome = search.find();
+  if (outcome == TouchSearch::Outcome::Here)
+  {
+    return false;
+  }
+  if (outcome == TouchSearch::Outcome::Free)
+  {
+    advanceInFlight(fall, duration);
+    return true;
+  }
   RockBody& body = fall.body;
-  const Block& block = body.block;
-  const BlockState start = body.state;
-  const FreeRotation rotation(block, start.spin);
-  const bool turns = !start.spin.isZero(0.0);
-  const auto flown = [&](double t)
+  if (search.sure() > 0.0)
   {
-    BlockState at = start;
-    at.time = start.time + t;
-    at.position = placeInFlight(start, fall.parameters.gravity, t);
-    at.velocity.z() -= fall.parameters.gravity * t;
-    if (turns)
-    {
-      const FreeRotation::Attitude turned = rotation.after(t);
-      at.orientation = (start.orientation * turned.turn).normalized();
-      at.spin = turned.spin;
-    }
-    return at;
-  };
-  const auto heightAt = [&](double t)
-  {
-    body.placed.move(block, flown(t));
-    return heightOver(body.placed, fall.ground.window(), -block.radius());
-  };
-  const double small = fall.springs.impactStep(body);
-  const double found = kTouchFound * block.radius();
-  const double gravity = fall.parameters.gravity;
-  // From bound to bound; where a bound is shorter than what resolves a touch, so far.
-  double t = 0.0, sure = 0.0, high = 0.0, low = 0.0;
-  Vec3 lowest = Vec3::Zero();
-  for (bool first = true, far = true;; first = false)
-  {
-    stayWanted();
-    const BlockState at = flown(t);
-    body.placed.move(block, at);
-    const double left = duration - t;
-    const double clear =
-      far ? timeToPlane(body.placed, at, fall.ground.window(), gravity, left) : 0.0;
-    if (clear >= left)
-    {
-      advanceInFlight(fall, duration);
-      return true;
-    }
-    far = clear > kClearSteps * small;
-    if (far)
-    {
-      t += clear;
-      continue;
-    }
-    const FlightLook look = lookAhead(body.placed, at, fall.ground.window(), lowest, gravity, left);
-    if (look.free <= 0.0)
-    {
-      if (first)
-      {
-        return false; // nothing to come to
-      }
-      low = look.gap;
-      break;
-    }
-    if (look.free >= left)
-    {
-      advanceInFlight(fall, duration);
-      return true;
-    }
-    sure = t;
-    high = look.gap;
-    lowest = look.lowest;
-    t = std::min(duration, t + std::max(look.free, small));
-    far = look.free > kFarSteps * small;
-    if (!first && look.free < small)
-    {
-      low = heightAt(t); // most likely that is it
-      if (low <= 0.0)
-      {
-        break;
-      }
-    }
-  }
-  // Between `sure` and `t`: regula falsi, by halves where one end stays.
-  double after = t;
-  for (int k = 0, side = 0; k < 60 && (high > found || sure == 0.0) && after - sure > 1e-12; ++k)
-  {
-    // Aims at a point over the ground, so that the end over it is the one that comes near.
-    const double aim = 0.5 * found;
-    const double share = std::clamp((high - aim) / (high - low), 0.02, 0.98);
-    const double middle = sure + share * (after - sure);
-    const double height = heightAt(middle);
-    if (height > 0.0)
-    {
-      sure = middle;
-      high = height;
-      low *= side > 0 ? 0.5 : 1.0;
-      side = 1;
-    }
-    else
-    {
-      after = middle;
-      low = height;
-      high *= side < 0 ? 0.5 : 1.0;
-      side = -1;
-    }
-  }
-  if (sure > 0.0)
-  {
-    advanceInFlight(fall, sure);
-    if (body.done || body.state.time < start.time + sure)
+    const double until = body.state.time + search.sure();
+    advanceInFlight(fall, search.sure());
+    if (body.done || body.state.time < until)
     {
       return true; // a barrier on the way
     }
+    fall.struckAtOnce = 0;
   }
-  body.placed.move(block, body.state);
-  thread_local std::vector<GroundPlace> places;
-  findTouches(body.placed, fall.ground.window(), kSharedTouch * block.radius(), places);
-  std::vector<StruckPoint>& touches = touchSpace();
-  touches.clear();
-  const double width = fall.surface.terrain().width(), height = fall.surface.terrain().height();
-  for (const GroundPlace& place : places)
-  {
-    // On the apron the ground is that of the edge.
-    const double inset = 1e-9 * (width + height);
-    const std::int64_t cfe =
-      fall.surface.terrain().cfeAt(std::clamp(place.point.x(), inset, width - inset),
-        std::clamp(place.point.y(), inset, height - inset));
-    touches.push_back({ place.point, place.normal, cfe });
-  }
-  fall.struckAtOnce = sure > 0.0 ? 0 : fall.struckAtOnce;
+  const std::vector<StruckPoint>& touches = touchesNow(fall);
   return strike(fall, touches, false) && partsFrom(body, touches);
 }
 
