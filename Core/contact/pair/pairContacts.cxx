@@ -28,7 +28,6 @@ struct Match
   int old;     ///< Number of a contact, −1: none.
   bool itself; ///< Between the same features.
   bool near;   ///< Where it was.
-  bool comes;  ///< The touch becomes a contact.
 };
 
 /// Finds for each touch which of the old contacts it is; points nearer than `same` (m) may be one.
@@ -42,7 +41,7 @@ void match(std::span<const Touch> found, const PairAxis& axis, std::span<const C
     const TouchFeatures features(found[i], axis);
     // The old point is where its rock has carried it since (see the solver's write-back).
     const auto away = [&](std::size_t k) { return (olds[k].point - found[i].point).squaredNorm(); };
-    Match match = { -1, false, false, true };
+    Match match = { -1, false, false };
     // Mostly all are there again, in their order.
     std::size_t k = i < olds.size() && !taken[i] && features.are(olds[i]) ? i : 0;
     while (k < olds.size() && (taken[k] || !features.are(olds[k])))
@@ -77,52 +76,11 @@ void match(std::span<const Touch> found, const PairAxis& axis, std::span<const C
   }
 }
 
-/// Whether the touches are those that were there, in their order.
-bool areSame(std::span<const Touch> found, const PairAxis& axis, std::span<const Contact> olds)
-{
-  if (found.size() != olds.size() || axis.kind == PairAxis::Kind::Edges)
-  {
-    return false;
-  }
-  std::size_t i = 0;
-  while (i < olds.size() && TouchFeatures(found[i], axis).are(olds[i]))
-  {
-    ++i;
-  }
-  return i == olds.size();
-}
-
 /// Depth beyond the reckoned one is no compression: a step reckons with levers of its middle, and
 /// where the rocks have turned they end up deeper. A stiff spring would make an impulse of that.
 void letGo(double oldGap, Contact& c)
 {
   c.offset = std::min(c.offset, c.distance - std::min(0.0, oldGap));
-}
-
-/// goOn() for one that is between the same features on a face; points nearer than √`same2` (m) are
-/// one.
-void stay(const Touch& touch, const PairAxis& axis, bool turned, double same2, Contact& c)
-{
-  const double oldGap = c.gap();
-  const Vec3 moved = c.point - touch.point;
-  c.normal = axis.normal;
-  c.shearForce = 0.0;
-  const bool cut = touch.feature < 0;
-  c.distance = touch.distance;
-  if (cut && moved.squaredNorm() < same2)
-  {
-    c.distance += (axis.kind == PairAxis::Kind::FaceOfFirst ? -1.0 : 1.0) * c.normal.dot(moved);
-  }
-  else
-  {
-    c.point = touch.point;
-    c.offset = c.closed() && (turned || cut) ? c.distance - oldGap : c.offset;
-  }
-  if (c.closed())
-  {
-    c.slip -= c.slip.dot(c.normal) * c.normal;
-  }
-  letGo(oldGap, c);
 }
 
 /// A contact goes on with its springs at a touch; `turned`: along another axis.
@@ -202,28 +160,8 @@ struct Renewal
   double same;                                ///< Points no farther apart are one, m.
   std::optional<ClosingGaps::AtPoints> sieve; ///< What cannot close is left out.
 
-  void stayAll(RockPair& pair) const; ///< The same as in the last step, all of them.
   void replaceAll(RockPair& pair);
 };
-
-void Renewal::stayAll(RockPair& pair) const
-{
-  Contact* to = pair.contacts.data();
-  for (std::size_t i = 0; i < found.size(); ++i)
-  {
-    Contact& c = pair.contacts[i];
-    stay(found[i], pair.axis, turned, same * same, c);
-    if (!sieve || mayClose(c, *sieve))
-    {
-      if (to != &c)
-      {
-        *to = c;
-      }
-      ++to;
-    }
-  }
-  pair.contacts.resize(std::size_t(to - pair.contacts.data()));
-}
 
 void Renewal::replaceAll(RockPair& pair)
 {
@@ -243,58 +181,32 @@ void Renewal::replaceAll(RockPair& pair)
   {
     sieve.reset(); // what springs are handed to may be any
   }
-  // As long as nothing is written where an old one is still to be read, there is no need for a
-  // copy.
-  std::size_t count = 0;
-  bool inPlace = !hands;
-  for (std::size_t i = 0; i < touches; ++i)
-  {
-    Match& match = matches[i];
-    inPlace = inPlace && (match.old < 0 || std::size_t(match.old) >= count);
-    match.comes =
-      match.old >= 0 || !sieve || !(std::max(0.0, found[i].distance) > sieve->at(found[i].point));
-    count += match.comes ? 1 : 0;
-  }
-  thread_local std::vector<Contact> copies;
-  if (!inPlace)
-  {
-    copies = pair.contacts;
-  }
-  if (count > olds)
-  {
-    pair.contacts.resize(count);
-  }
-  const Contact* const before = inPlace ? pair.contacts.data() : copies.data();
-  Contact* to = pair.contacts.data();
+  thread_local std::vector<Contact> before;
+  before.swap(pair.contacts);
+  pair.contacts.clear();
   for (std::size_t i = 0; i < touches; ++i)
   {
     const Match& match = matches[i];
-    if (!match.comes)
+    if (match.old >= 0)
     {
-      continue;
+      Contact& c = pair.contacts.emplace_back(before[std::size_t(match.old)]);
+      goOn(found[i], second, pair.axis, match, turned, c);
+      if (sieve && !mayClose(c, *sieve))
+      {
+        pair.contacts.pop_back();
+      }
     }
-    Contact& c = *to;
-    if (match.old < 0)
+    else if (!sieve || !(std::max(0.0, found[i].distance) > sieve->at(found[i].point)))
     {
-      c = Contact();
+      Contact& c = pair.contacts.emplace_back();
       putTouch(found[i], second, pair.axis, c);
       // Found overlapping: finding it makes no energy.
       c.offset = std::min(0.0, c.distance);
-      ++to;
-      continue;
     }
-    const Contact& old = before[match.old];
-    if (&old != &c)
-    {
-      c = old;
-    }
-    goOn(found[i], second, pair.axis, match, turned, c);
-    to += !sieve || mayClose(c, *sieve) ? 1 : 0;
   }
-  pair.contacts.resize(std::size_t(to - pair.contacts.data()));
   if (hands)
   {
-    handOverAll({ taken, olds }, copies, pair.contacts);
+    handOverAll({ taken, olds }, before, pair.contacts);
     if (all)
     {
       std::erase_if(pair.contacts, [&](const Contact& c) { return !mayClose(c, *all); });
@@ -344,14 +256,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
   {
     renewal.sieve = closing->atPoints(pair.axis.normal);
   }
-  if (areSame(found, pair.axis, pair.contacts))
-  {
-    renewal.stayAll(pair);
-  }
-  else
-  {
-    renewal.replaceAll(pair);
-  }
+  renewal.replaceAll(pair);
 }
 
 } // namespace rockfall
