@@ -78,10 +78,10 @@ void EndDetection::placeRock(std::size_t m)
   }
   const std::size_t place = std::size_t(rock.place);
   IslandWork::Motion& motion = work_.motions[place];
-  motion.moved = work_.solver.rows().moved(place);
+  motion.moved = work_.solver.moved(place);
   if (motion.moved)
   {
-    const BlockState end = work_.solver.rows().end(place);
+    const BlockState end = work_.solver.end(place);
     rock.end.placeFrame(body.block, end);
     rock.endHull.update(rock.end);
     motion.displacement = end.position - body.state.position;
@@ -104,7 +104,7 @@ double EndDetection::deepestPassed() const
     }
     const RockPair& pair = *island_.pairs[added.of];
     const double before = std::min(0.0, pair.axis.distance);
-    const double deeper = before - (work_.solver.rows().gap(work_.firsts.back() + k) + offset);
+    const double deeper = before - (work_.solver.gap(work_.firsts.back() + k) + offset);
     most = std::max(most, deeper / work_.smallerRadius(pair));
   }
   return most;
@@ -112,7 +112,7 @@ double EndDetection::deepestPassed() const
 
 double EndDetection::overlapAt(std::size_t contact) const
 {
-  return work_.solver.rows().gap(contact) + work_.contacts[contact].contact->offset;
+  return work_.solver.gap(contact) + work_.contacts[contact].contact->offset;
 }
 
 double EndDetection::deepestOf(std::size_t pair) const
@@ -245,8 +245,8 @@ double EndDetection::addMissed(std::size_t m)
     {
       // A contact that is there already was reckoned wrong.
       const double gap = c.distance - work_.contacts[known].contact->offset;
-      const double wrong = std::abs(work_.solver.rows().gap(known) - gap) / smaller;
-      most = work_.solver.rows().setGap(known, gap) ? std::max(most, wrong) : most;
+      const double wrong = std::abs(work_.solver.gap(known) - gap) / smaller;
+      most = work_.solver.setGap(known, gap) ? std::max(most, wrong) : most;
       continue;
     }
     most = std::max(most, (this->deepestOf(p) - c.distance) / smaller);
@@ -267,7 +267,7 @@ const CandidatePairs& EndDetection::candidatesOf(std::size_t m)
   rock.body().placed.placeVertices();
   rock.end.placeVertices();
   Fall& fall = rock.fall();
-  return fall.ground.candidatesAt(fall.body, fall.structures, work_.solver.rows().end(place),
+  return fall.ground.candidatesAt(fall.body, fall.structures, work_.solver.end(place),
     motion.displacement.norm() + motion.rimTravel);
 }
 
@@ -281,7 +281,7 @@ std::size_t EndDetection::touchesOnSlope(
   const auto addReckoned = [&](std::size_t k)
   {
     Contact c = *work_.contacts[k].contact;
-    const double gap = work_.solver.rows().gap(k);
+    const double gap = work_.solver.gap(k);
     pressed = std::max(pressed, -gap);
     c.distance = gap + c.offset;
     touches.push_back(c);

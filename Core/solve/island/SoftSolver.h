@@ -78,7 +78,6 @@ public:
     this->begin(request, accept, bodies, contacts);
     return this->finish();
   }
-  SoftSolver& rows() { return *this; } ///< Its side that a look asks and tells.
 
   // What the solution says, by numbers of bodies and contacts.
   BlockState end(std::size_t body) const { return movers_.end(body); } ///< At the end of the step.
