@@ -4,6 +4,8 @@
 #include "classLooks.h"
 #include "proxyNumbers.h"
 
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPVDataSetAttributesInformation.h"
@@ -18,6 +20,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <limits>
@@ -392,6 +395,15 @@ void rescale(vtkSMProxy* representation, vtkSMViewProxy* view)
   }
 }
 
+/// Cells of what is shown now; what ParaView knows of it is that of the last Apply.
+std::int64_t cellsOf(const Shown& shown)
+{
+  auto* made = vtkAlgorithm::SafeDownCast(shown.source->GetClientSideObject());
+  vtkDataObject* data = made ? made->GetOutputDataObject(shown.port) : nullptr;
+  return data ? data->GetNumberOfElements(vtkDataObject::CELL)
+              : shown.source->GetDataInformation(unsigned(shown.port))->GetNumberOfCells();
+}
+
 /// Many paths are thin, or they hide the map under them; a width that was chosen stays.
 void fitPaths(const Shown& shown, vtkSMProxy* representation)
 {
@@ -402,9 +414,7 @@ void fitPaths(const Shown& shown, vtkSMProxy* representation)
   const double now = vtkSMPropertyHelper(representation, "LineWidth").GetAsDouble();
   if (now == kPathWidth || now == kThinPath)
   {
-    const bool many =
-      shown.source->GetDataInformation(unsigned(shown.port))->GetNumberOfCells() > kManyPaths;
-    set(representation, "LineWidth", many ? kThinPath : kPathWidth);
+    set(representation, "LineWidth", cellsOf(shown) > kManyPaths ? kThinPath : kPathWidth);
     representation->UpdateVTKObjects();
   }
 }
@@ -413,7 +423,7 @@ void fitPaths(const Shown& shown, vtkSMProxy* representation)
 /// failed.
 bool showsColours(const Shown& shown, vtkSMViewProxy* view)
 {
-  return shown.source->GetDataInformation(unsigned(shown.port))->GetNumberOfCells() > 0 &&
+  return cellsOf(shown) > 0 &&
     (!is(shown, "vtkGrowingPaths", 0) || vtkSMPropertyHelper(view, "ViewTime").GetAsDouble() > 0.0);
 }
 
