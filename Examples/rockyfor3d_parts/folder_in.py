@@ -22,6 +22,7 @@ SOILS = (("river, swamp", "Soil"), ("fine soil, deeper than 1 m", "Soil"), ("fin
          ("scree, below 10 cm", "Talus"), ("talus, above 10 cm", "Talus"), ("bedrock with thin cover", "Bedrock with boulders"),
          ("bedrock", "Rock"), ("asphalt", "Asphalt"))
 MOST_CLASSES, MOST_STEMS = 255, 1000000
+MOST_OFF_NET = 1.5  # cells
 ROUGHNESS_LENGTH = 2.0  # m, of the presets' obstacles
 EQUANT = 1.25  # longest to shortest axis of an ellipsoid that an icosahedron may stand for
 LEAST_STEM = 5.0  # cm
@@ -143,30 +144,58 @@ def stems(grids, path, per, seed):
     return len(rows)
 
 
+def pieces_of(rows, columns):
+    """Cells, as indices, by the pieces in which they touch each other, also by corners."""
+    left = {cell: k for k, cell in enumerate(zip(rows.tolist(), columns.tolist()))}
+    while left:
+        cells, piece = [next(iter(left))], []
+        piece.append(left.pop(cells[0]))
+        while cells:
+            row, column = cells.pop()
+            for near in ((row + down, column + right) for down in (-1, 0, 1) for right in (-1, 0, 1)):
+                if near in left:
+                    piece.append(left.pop(near))
+                    cells.append(near)
+        yield np.sort(piece)
+
+
+def line_through(places, cell):
+    """Points of a line along places, and how far the farthest place is off it, in cells."""
+    along = places - places.mean(axis=0)
+    axis = np.linalg.svd(along, full_matrices=False)[2][0]
+    axis = axis if axis[np.argmax(np.abs(axis))] > 0 else -axis
+    way = along @ axis
+    step = np.round((way - way.min()) / cell).astype(int)
+    line = np.array([places[step == k].mean(axis=0) for k in np.unique(step)])
+    off = max(np.linalg.norm(line - place, axis=1).min() for place in places)
+    return line, off / cell
+
+
 def nets(grids, path):
-    """A line through the cells of each number; how many, and the numbers that were left out."""
+    """A line through each piece of the cells of a number; how many, and the numbers of which a cell by itself was left out."""
     number, energy, height = (grids[name].values for name in NETS)
     rows, lost = [], []
     for one in np.unique(number[number > 0]):
         own = np.nonzero(number == one)
-        x, y = grids["net_number"].centres(*own)
-        places = np.stack([x, y], axis=1)
-        along = places - places.mean(axis=0)
-        axis = np.linalg.svd(along, full_matrices=False)[2][0]
-        axis = axis if axis[np.argmax(np.abs(axis))] > 0 else -axis
-        way = along @ axis
-        step = np.round((way - way.min()) / grids["dem"].cell).astype(int)
-        line = [places[step == k].mean(axis=0) for k in np.unique(step)]
-        if len(line) < 2:
-            lost.append(int(one))
-            continue
-        rows.append([f"LINESTRING({','.join(f'{a:.3f} {b:.3f}' for a, b in line)})", f"net {one:.0f}",
-                     f"{np.nanmean(height[own]):g}", f"{np.nanmean(energy[own]):g}"])
-        if not float(rows[-1][2]) > 0.0:
-            raise Bad(f"{grids['net_height'].path}: net {one:.0f} has the height {rows[-1][2]} m, it must be above 0")
+        places = np.stack(grids["net_number"].centres(*own), axis=1)
+        made = 0
+        for piece in pieces_of(*own):
+            cells = tuple(index[piece] for index in own)
+            if len(piece) < 2:
+                lost.append(int(one))
+                continue
+            line, off = line_through(places[piece], grids["dem"].cell)
+            if off > MOST_OFF_NET:
+                raise Bad(f"{grids['net_number'].path}: the cells of net {one:.0f} that touch each other do not lie along one line, as one is "
+                          f"{off:.1f} cells off it: give its arms numbers of their own")
+            made += 1
+            rows.append([f"LINESTRING({','.join(f'{a:.3f} {b:.3f}' for a, b in line)})", f"net {one:.0f}" + (f", part {made}" if made > 1 else ""),
+                         f"{np.nanmean(height[cells]):g}", f"{np.nanmean(energy[cells]):g}"])
+            if not float(rows[-1][2]) > 0.0:
+                raise Bad(f"{grids['net_height'].path}: net {one:.0f} has the height {rows[-1][2]} m, it must be above 0")
     if rows:
         rows_to(path, ["WKT", "name", "height", "capacity"], rows)
-    return len(rows), lost
+    return len(rows), sorted(set(lost))
 
 
 def convert(source, target, iterations, per, seed):
@@ -205,10 +234,10 @@ def convert(source, target, iterations, per, seed):
         made, lost = nets(grids, into("nets.csv"))
         if made:
             terrain["BarrierFile"] = "nets.csv"
-        notes.append(f"{made} nets: lines through the cells of a net_number, with the mean of net_energy (kJ) and net_height (m). "
+        notes.append(f"{made} nets: lines through the cells of a net_number that touch each other, with the mean of net_energy (kJ) and net_height (m). "
                      "The names of these rasters and their units are from memory.")
         if lost:
-            notes.append(f"Left out, as they have one cell only: net {', '.join(map(str, lost))}.")
+            notes.append(f"Left out, as cells by themselves: net {', '.join(map(str, lost))}.")
     study = {"terrain": terrain, "rocks": {"FileName": "sources.csv"},
              "simulation": {"EndTime": 120, "Seed": 1, "TrajectoryOutput": "Thinned"}, "map": {}, "trajectories": False,
              "iterations": iterations, "chunk": max(1, min(iterations, 20000 // count))}
