@@ -92,7 +92,7 @@ void styleProfile(vtkSMProxy* representation, vtkSMViewProxy* view)
 
 void followProfile(const Shown& shown, vtkSMViewProxy* view)
 {
-  constexpr double room = 1.05;
+  constexpr double room = 1.4; // the legend lies over the curves
   vtkPVDataInformation* data = shown.source->GetDataInformation(unsigned(shown.port));
   const double left = std::max(most(data, "Speed"), most(data, "HeightOverGround"));
   const double right = most(data, "EnergyInKilojoules");
