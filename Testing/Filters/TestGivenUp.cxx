@@ -13,12 +13,13 @@
 #include "vtkTrajectoryCollector.h"
 
 #include <chrono>
+#include <ctime>
 
 namespace
 {
 
 constexpr double kWanted = 0.2; // s
-constexpr double kHeard = 1.0;  // s
+constexpr double kHeard = 1.0;  // s of the processor, which other programs do not make longer
 
 class TestGivenUp : public FilterTest
 {
@@ -45,9 +46,10 @@ protected:
       });
     filter->AddObserver(vtkCommand::ProgressEvent, stop);
     this->Started = Clock::now();
+    const std::clock_t begun = std::clock();
     filter->Update();
     EXPECT_GE(this->Elapsed(), kWanted) << "it was done before";
-    EXPECT_LE(this->Elapsed(), kWanted + kHeard);
+    EXPECT_LE(double(std::clock() - begun) / CLOCKS_PER_SEC, kWanted + kHeard);
     EXPECT_TRUE(filter->GetAbortOutput());
     for (int port = 0; port < filter->GetNumberOfOutputPorts(); ++port)
     {
