@@ -165,7 +165,8 @@ TEST(StandRaster, BandsInTheUnitOfAnotherPlace)
     { std::array{ "m", "m", "band 2 (dbh_mean) has the unit \"m\", it must be in cm" },
       std::array{ "cm", "ft", "band 3 (height) has the unit \"ft\", it must be in m" } })
   {
-    EXPECT_EQ(rockfall::testing::messageOf<DataError>([&] { inUnits(diameter, height); }),
+    EXPECT_EQ(
+      rockfall::testing::messageOf<DataError>([&, d = diameter, h = height] { inUnits(d, h); }),
       name + ": " + said);
   }
 }
