@@ -18,6 +18,9 @@ namespace
 
 /// A path whose end is no further from a line ends on it, m.
 constexpr double kOnLine = 1e-6;
+/// A path that begins on a line is off it when it is farther than this, m: cubics between samples,
+/// up to a touch, swing to the other side by millimetres.
+constexpr double kOffLine = 1e-2;
 
 /// A path that passes a vertex of a line nearer than this is looked at from this far, where it is
 /// clear on which side of the line it is, m.
@@ -276,9 +279,10 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
   const auto sideOf = [&segment](const PathPoint& p)
   { return segment.side(p.position.x(), p.position.y()); };
   double previous = 0.0; // the last side that was not 0
-  // A path that begins on the line has not crossed it: until it is off, rounding has no side.
-  const auto beyond = [&previous](double side)
-  { return previous == 0.0 && std::abs(side) < kOnLine ? 0.0 : side; };
+  // A path that begins on the line has not crossed it: until it is off, it has no side.
+  const bool begins = std::abs(sideOf(path.points.front())) < kOnLine;
+  const auto beyond = [&](double side)
+  { return begins && previous == 0.0 && std::abs(side) < kOffLine ? 0.0 : side; };
   previous = beyond(sideOf(path.points.front()));
   for (std::size_t k = 1; k < path.points.size(); ++k)
   {

@@ -142,9 +142,10 @@ TEST(Crossings, WhatEndsOnTheLineHasNotCrossedIt)
 
 TEST(Crossings, WhatBeginsOnTheLineHasNotCrossedIt)
 {
-  // A rock that is released on the line falls along it, on either side of it by rounding, then goes.
+  // A rock that is released on the line falls along it, on either side of it by rounding or by the
+  // swing of a cubic, then goes.
   const CollectorLine line = lineOf({ { 10, -20 }, { 10, 20 } });
-  for (const double first : { -1e-12, 0.0, 1e-12 })
+  for (const double first : { -1e-7, -1e-12, 0.0, 1e-12, 1e-7 })
   {
     for (const double away : { -5.0, 5.0 })
     {
@@ -155,6 +156,7 @@ TEST(Crossings, WhatBeginsOnTheLineHasNotCrossedIt)
         points[k].time = double(k);
         points[k].position.x() = 10.0 + xs[k];
       }
+      points[2].velocity.x() = 0.02; // comes to it as from the other side, by 3 mm
       EXPECT_TRUE(crossingsOf(rockPathOf(points, 0, 0, 1.0), line).empty()) << first << " " << away;
       points.push_back(points.back()); // and back over it
       points.back().time = 5.0;
