@@ -188,26 +188,6 @@ double Surface::elevation(double x, double y) const
     alongY * (t - row - (lower ? 1.0 : 0.0));
 }
 
-void SurfacePatch::findTop()
-{
-  // As steep as between its corners.
-  const auto z = [&](int row, int column)
-  { return nodes[std::size_t(row) * nodeColumns + column].position.z(); };
-  const int r = nodeRows - 1, c = nodeColumns - 1;
-  tilt.x() = 0.5 * (z(0, c) + z(r, c) - z(0, 0) - z(r, 0)) / (c * cellSize);
-  tilt.y() = 0.5 * (z(0, 0) + z(0, c) - z(r, 0) - z(r, c)) / (r * cellSize);
-  if (!tilt.allFinite())
-  {
-    tilt.setZero();
-  }
-  highest = -std::numeric_limits<double>::infinity();
-  for (const Node& node : nodes)
-  {
-    const double height = node.position.z() - tilt.dot(node.position.head<2>());
-    highest = height > highest ? height : highest; // not over holes
-  }
-}
-
 namespace
 {
 
@@ -416,7 +396,6 @@ void gatherPatch(
   patch.north = (g.rows - 1 - row0) * g.cellSize;
   patch.cellSize = g.cellSize;
   layNodes(surface, patch);
-  patch.findTop();
   layTriangles(surface, patch);
   const std::vector<Rim> rims = findRidges(patch);
   findPeaks(patch);

@@ -227,14 +227,6 @@ struct SurfacePatch
   int nodeColumns = 0, nodeRows = 0;
   double west = 0.0, north = 0.0, cellSize = 1.0; ///< Of node (0, 0), m.
 
-  /// No node of the slope is further over the plane through the origin that rises by `tilt` than
-  /// this, straight up, m.
-  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();
-  double highest = 0.0;
-  /// How far a place is over all of them, m; < 0: it may be under one.
-  double over(const Vec3& p) const { return p.z() - tilt.dot(p.head<2>()) - highest; }
-  void findTop(); ///< Of the nodes of the slope, when these are all.
-
   /// x–y box in which a rock may stand for this patch to be enough, m.
   double xMin = 0.0, xMax = -1.0, yMin = 0.0, yMax = -1.0;
 

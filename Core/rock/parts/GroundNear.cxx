@@ -111,7 +111,6 @@ void GroundNear::lower(double by, double depth)
   {
     triangle.offset -= by * triangle.normal.z();
   }
-  patch_.highest -= by;
   // For the pairs that can touch the rock has moved the other way.
   candidates_.position.z() -= by;
   candidates_.travel.lower(by);
