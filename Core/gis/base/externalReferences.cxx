@@ -185,8 +185,7 @@ public:
       }
       if (is("SourceFilename") || is("SourceDataset") || is("SrcDataSource"))
       {
-        this->checkSource(
-          CPLGetXMLValue(node, "", ""), CPLTestBool(CPLGetXMLValue(node, "relativeToVRT", "0")));
+        this->checkSource(CPLGetXMLValue(node, "", ""), sourceFile(node, folder_));
       }
       else if (node->eType == CXT_Text)
       {
@@ -264,15 +263,12 @@ private:
   }
 
   /// A value that names a file in any case.
-  void checkSource(const std::string& written, bool relative)
+  void checkSource(const std::string& written, const std::string& name)
   {
     if (written.empty())
     {
       return;
     }
-    const std::string name = relative
-      ? std::string(CPLProjectRelativeFilename(folder_.c_str(), written.c_str()))
-      : written;
     if (isAddress(name) || isMemory(name) || isXml(name) || inlineText_ || !isWithin(name, folder_))
     {
       this->refuse(written);

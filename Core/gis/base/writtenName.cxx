@@ -4,6 +4,8 @@
 #include "base/text/plainText.h"
 
 #include <cpl_conv.h>
+#include <cpl_minixml.h>
+#include <cpl_string.h>
 #include <cpl_vsi.h>
 
 #include <algorithm>
@@ -84,6 +86,15 @@ bool isWithin(const std::string& fileName, const std::string& folder)
   const std::filesystem::path inner = whole(fileName), outer = whole(folder.empty() ? "." : folder);
   return !failed &&
     std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+std::string sourceFile(const CPLXMLNode* element, const std::string& folder)
+{
+  const std::string written = element ? CPLGetXMLValue(element, "", "") : "";
+  const bool relative = element && CPLTestBool(CPLGetXMLValue(element, "relativeToVRT", "0"));
+  return relative && !written.empty()
+    ? std::string(CPLProjectRelativeFilename(folder.c_str(), written.c_str()))
+    : written;
 }
 
 std::string folderOf(const std::string& fileName)

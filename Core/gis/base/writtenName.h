@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+struct CPLXMLNode;
+
 namespace rockfall::gis
 {
 
@@ -29,6 +31,10 @@ std::string xmlOf(const std::string& fileName);
 bool isWithin(const std::string& fileName, const std::string& folder);
 
 std::string folderOf(const std::string& fileName);
+
+/// Name of the file in an element of a virtual dataset in this folder, as SourceFilename; empty if
+/// there is none.
+std::string sourceFile(const CPLXMLNode* element, const std::string& folder);
 
 /// The file of a name like NETCDF:"a.nc":z or HDF5:a.h5://z; other names as they are.
 std::string fileWithin(const std::string& name);

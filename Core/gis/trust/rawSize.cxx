@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "gis/base/gdal.h"
+#include "gis/base/writtenName.h"
 
 #include <cpl_conv.h>
 #include <cpl_minixml.h>
@@ -69,12 +70,8 @@ void checkVrtBands(const CPLXMLNode* node, GDALDataset& dataset, const std::stri
       const auto integer = [node](const char* name, const char* missing)
       { return std::int64_t(std::strtoll(CPLGetXMLValue(node, name, missing), nullptr, 10)); };
       RawBand band;
-      band.file = CPLGetXMLValue(node, "SourceFilename", "");
-      if (CPLTestBool(CPLGetXMLValue(node, "SourceFilename.relativeToVRT", "0")))
-      {
-        const std::string folder = CPLGetPath(dataset.GetDescription());
-        band.file = CPLProjectRelativeFilename(folder.c_str(), band.file.c_str());
-      }
+      band.file =
+        sourceFile(CPLGetXMLNode(node, "SourceFilename"), CPLGetPath(dataset.GetDescription()));
       band.number = int(integer("band", "1"));
       band.columns = dataset.GetRasterXSize();
       band.rows = dataset.GetRasterYSize();

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "base/text/plainText.h"
 #include "gis/base/gdal.h"
+#include "gis/base/writtenName.h"
 #include "gis/trust/headers.h"
 #include "gis/trust/heightUnit.h"
 
@@ -14,7 +15,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,7 +25,7 @@ namespace
 {
 
 /// Sources of sources: a virtual raster of virtual ones.
-constexpr int kDeepest = 4;
+constexpr int kNested = 4;
 
 struct Source
 {
@@ -45,7 +45,7 @@ bool isChanged(const CPLXMLNode* source)
     CPLGetXMLNode(source, "LUT") || CPLGetXMLNode(source, "Exponent");
 }
 
-/// Of a band as its file's XML has them; none of a band that is computed.
+/// The sources of a band, as its file's XML has them; none of a band that is computed.
 std::vector<Source> sourcesOf(GDALDataset& dataset, int band)
 {
   std::vector<Source> sources;
@@ -54,18 +54,14 @@ std::vector<Source> sourcesOf(GDALDataset& dataset, int band)
   {
     return sources;
   }
-  const std::unique_ptr<CPLXMLNode, void (*)(CPLXMLNode*)> root(
-    CPLParseXMLString(*xml), CPLDestroyXMLNode);
+  const CPLXMLTreeCloser root(CPLParseXMLString(*xml));
   const CPLXMLNode* const whole = root ? CPLGetXMLNode(root.get(), "=VRTDataset") : nullptr;
   const std::string folder = CPLGetPath(dataset.GetDescription());
   const auto add = [&](const CPLXMLNode* name, int of)
   {
-    const std::string written = name ? CPLGetXMLValue(name, "", "") : "";
-    const bool relative = name && std::atoi(CPLGetXMLValue(name, "relativeToVRT", "0")) != 0;
-    if (!written.empty())
+    if (const std::string file = sourceFile(name, folder); !file.empty())
     {
-      sources.push_back(
-        { relative ? CPLProjectRelativeFilename(folder.c_str(), written.c_str()) : written, of });
+      sources.push_back({ file, of });
     }
   };
   for (const CPLXMLNode* node = whole ? whole->psChild : nullptr; node; node = node->psNext)
@@ -120,7 +116,7 @@ public:
         continue; // who reads it, says so
       }
       const std::string unit = namedUnitOf(*tile, *of);
-      if (isNoUnit(unit) && depth < kDeepest)
+      if (isNoUnit(unit) && depth < kNested)
       {
         if (const std::vector<Source> inner = sourcesOf(*tile, source.band); !inner.empty())
         {
