@@ -27,6 +27,19 @@ std::string text(double value)
   return numberText(value, 6);
 }
 
+/// Doubts on stems and on the means of stands.
+Doubt thicknesses(const std::string& of)
+{
+  return { of,
+    "Stems have " + between(plausible::kStemDiameter, 0.01) + " cm: are diameters in cm?" };
+}
+Doubt slendernesses(const std::string& of)
+{
+  return { of,
+    "Trees are " + between(plausible::kSlenderness) +
+      " times as high as thick: are diameters in cm and heights in m?" };
+}
+
 std::string highAndThick(double height, double diameter)
 {
   return ": " + text(height) + " m high and " + text(100.0 * diameter) + " cm thick";
@@ -35,11 +48,7 @@ std::string highAndThick(double height, double diameter)
 void lookAtTrees(const std::vector<Tree>& trees, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  Doubt thick("diameters of trees",
-    "Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
-  Doubt slender("trees",
-    "Trees are " + between(kSlenderness) +
-      " times as high as thick: are diameters in cm and heights in m?");
+  Doubt thick = thicknesses("diameters of trees"), slender = slendernesses("trees");
   Doubt wrong("lengths of lying stems",
     "Lying stems are " + between(kLyingLength) + " m long: is the line one stem?");
   Doubt strong("capacities of trees",
@@ -414,11 +423,7 @@ void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& not
       " m² at breast height: are stems_ha per hectare and diameters in cm?");
   Doubt mixed("shares of conifers",
     "Conifers are " + between(kConifers, 0.01) + " % of the stems: is it in %?");
-  Doubt thick("mean diameters of stands",
-    "Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
-  Doubt slender("stands",
-    "Trees are " + between(kSlenderness) +
-      " times as high as thick: are diameters in cm and heights in m?");
+  Doubt thick = thicknesses("mean diameters of stands"), slender = slendernesses("stands");
   Doubt strong("stands by their factors",
     "Factors of species are " + between(kStemCapacity) + ": are they of the capacity?");
   for (const Stand& s : stands)
