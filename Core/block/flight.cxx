@@ -54,13 +54,19 @@ BlockState between(const BlockState& from, const BlockState& to, double s)
 
 BlockState fly(const Block& block, const BlockState& state, double gravity, double duration)
 {
+  return fly(FreeRotation(block, state.spin), state, gravity, duration);
+}
+
+BlockState fly(
+  const FreeRotation& rotation, const BlockState& state, double gravity, double duration)
+{
   BlockState next = state;
   next.time = state.time + duration;
   next.position = placeInFlight(state, gravity, duration);
   next.velocity.z() -= gravity * duration;
   if (!state.spin.isZero(0.0))
   {
-    const FreeRotation::Attitude turned = FreeRotation(block, state.spin).after(duration);
+    const FreeRotation::Attitude turned = rotation.after(duration);
     next.orientation = (state.orientation * turned.turn).normalized();
     next.spin = turned.spin;
   }

@@ -16,7 +16,6 @@ TouchSearch::TouchSearch(Fall& fall, double duration)
   : fall_(fall)
   , duration_(duration)
   , rotation_(fall.body.block, fall.body.state.spin)
-  , turns_(!fall.body.state.spin.isZero(0.0))
 {
 }
 
@@ -32,18 +31,7 @@ TouchSearch::Outcome TouchSearch::find()
 
 BlockState TouchSearch::flown(double t) const
 {
-  const BlockState& start = fall_.body.state;
-  BlockState at = start;
-  at.time = start.time + t;
-  at.position = placeInFlight(start, fall_.parameters.gravity, t);
-  at.velocity.z() -= fall_.parameters.gravity * t;
-  if (turns_)
-  {
-    const FreeRotation::Attitude turned = rotation_.after(t);
-    at.orientation = (start.orientation * turned.turn).normalized();
-    at.spin = turned.spin;
-  }
-  return at;
+  return fly(rotation_, fall_.body.state, fall_.parameters.gravity, t);
 }
 
 double TouchSearch::heightAt(double t)

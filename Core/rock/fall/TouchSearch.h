@@ -14,11 +14,11 @@ namespace rockfall
 
 struct Fall;
 
-/// Of one flight. Moves the rock's `placed` and nothing else.
+/// The search in one flight. Moves the rock's `placed` and nothing else.
 class TouchSearch
 {
 public:
-  /// From the rock's state on, for `duration` (s).
+  /// A flight of `duration` (s) from the rock's state on.
   TouchSearch(Fall& fall, double duration);
 
   enum class Outcome
@@ -40,8 +40,7 @@ private:
   Fall& fall_;
   double duration_;
   FreeRotation rotation_;
-  bool turns_;
-  // From the start, s: nothing is touched until `sure_`, and at `after_` the rock is in the ground.
+  // Times from the start, s: nothing is touched until `sure_`, and at `after_` the rock is in the ground.
   double sure_ = 0.0, after_ = 0.0;
   double high_ = 0.0, low_ = 0.0; ///< Heights over the ground at these times, m.
 };
