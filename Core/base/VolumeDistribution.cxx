@@ -15,7 +15,7 @@ namespace rockfall
 namespace
 {
 
-/// In the order of VolumeLaw.
+/// Names in the order of VolumeLaw.
 constexpr const char* names[] = { "fixed", "uniform", "normal", "lognormal", "powerlaw" };
 
 /// Bounds that leave less than this of a distribution are a mistake, not a choice.

@@ -20,7 +20,7 @@ namespace
 /// Longest axis to shortest: a longer mesh shows no ellipsoid, and rolls and stands as no rock does.
 constexpr double kLongestEllipsoid = 5.0;
 
-/// In the order of Shape.
+/// Names in the order of Shape.
 constexpr std::array<const char*, kShapes> names = { "cube", "tetrahedron", "octahedron",
   "dodecahedron", "icosahedron", "box", "eota111", "eota221", "file", "sphere", "ellipsoid" };
 

@@ -23,7 +23,7 @@ namespace
 /// Memory of a rock until it is released, B: its polyhedron and its faces with their arrays.
 constexpr double bytesPerRock = 8000.0;
 
-/// Without a layer a line or an area was drawn.
+/// A line or an area is drawn if there is no layer.
 std::string rowName(const std::string& layer, const SourceRow& row)
 {
   return layer.empty() ? "Points" : layer + ", row " + std::to_string(row.row);

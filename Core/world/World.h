@@ -49,7 +49,7 @@ public:
   double time() const { return world_.time; }
   int rocks() const { return int(world_.rocks.size()); }
   const BlockState& state(int rock) const { return this->rock(rock).state(); }
-  /// As it is so far.
+  /// The rock as it is so far.
   const SingleRock& rock(int rock) const { return world_.rocks[std::size_t(rock)].sim; }
   /// Pairs near each other whose axis was ever looked for, by (first, second).
   std::vector<const RockPair*> pairs() const;

@@ -42,13 +42,13 @@ public:
   void refuseLostText(const Messages& messages) const;
 
   bool has(const std::string& name) const { return columns_.count(name) > 0; }
-  /// Of the first of these names that has a value; empty cells are as good as no column. Fails if
-  /// another one of them has another value.
+  /// The value of the first of these names that has one; empty cells are as good as no column.
+  /// Fails if another one of them has another value.
   std::optional<std::string> text(std::initializer_list<const char*> names) const;
   std::optional<std::string> text(const char* name) const { return this->text({ name }); }
   std::optional<double> number(std::initializer_list<const char*> names) const; ///< Finite.
   std::optional<double> number(const char* name) const { return this->number({ name }); }
-  /// From `low` to `high`, "it must be `range`".
+  /// A number from `low` to `high`, "it must be `range`".
   std::optional<double> ranged(
     std::initializer_list<const char*> names, double low, double high, const char* range) const;
   std::optional<double> positive(const char* name) const;

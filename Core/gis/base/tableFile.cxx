@@ -71,7 +71,7 @@ bool isAllNumbers(const RowCells& cells)
       [&](const std::string& cell) { return isEmpty(cell) || parsedNumber(cell); });
 }
 
-/// With commas between its cells, all of them quoted.
+/// The row with commas between its cells, all of them quoted.
 std::string inQuotes(const RowCells& cells)
 {
   std::string row;

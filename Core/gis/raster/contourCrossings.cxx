@@ -133,7 +133,7 @@ private:
     }
   }
 
-  /// Of two segments. A vertex on the other line counts to its left, so that a line which crosses
+  /// The crossing of two segments. A vertex on the other line counts to its left, so that a line which crosses
   /// there does so once.
   std::optional<Crossing> crossing(std::size_t i, std::size_t k) const
   {

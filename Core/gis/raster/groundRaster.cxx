@@ -238,7 +238,7 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
 
   std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
   std::unordered_map<double, int> known;
-  // Of a number that is changed: its class, a whole number but for the rounding of 0.1.
+  // The class of a number that is changed is a whole number but for the rounding of 0.1.
   const auto classOf = [&](double value)
   {
     const double of = scale.of(value), whole = std::round(of);

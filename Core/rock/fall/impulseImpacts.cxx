@@ -117,7 +117,7 @@ bool strike(Fall& fall, std::span<const StruckPoint> touches, bool carried)
   return true;
 }
 
-/// Where the rock touches the ground, or nearly so.
+/// Points at which the rock touches the ground, or nearly so.
 std::vector<StruckPoint>& touchesNow(Fall& fall)
 {
   thread_local std::vector<GroundPlace> places;

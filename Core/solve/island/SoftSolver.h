@@ -58,7 +58,7 @@ public:
   SoftSolver(const SoftSolver&) = delete; // its parts know each other
   SoftSolver& operator=(const SoftSolver&) = delete;
 
-  /// Of contacts that come without springs (IslandContact::bare).
+  /// Springs of contacts that come without (IslandContact::bare).
   void setStiffness(const PairStiffness& stiffness) { step_.stiffness = stiffness; }
   /// Sets the rows up and solves them. Bodies and contacts stay where they are until `finish`.
   void begin(const StepRequest& request, Accept accept, std::vector<IslandBody>& bodies,
