@@ -102,13 +102,17 @@ void widenPanels(QMainWindow* window)
   const int wide = std::min(400, 3 * window->width() / 8); // px: as ParaView 6.1 takes of 1024
   pqSettings* settings = pqApplicationCore::instance()->settings();
   auto* panel = window->findChild<QDockWidget*>("propertiesDock");
-  if (!panel || settings->value(done, 0).toInt() >= wide)
+  if (!panel || !panel->isVisible() || settings->value(done, 0).toInt() >= wide)
   {
     return;
   }
-  settings->setValue(done, wide);
-  if (panel->width() < wide)
+  if (panel->width() >= wide)
   {
+    settings->setValue(done, wide);
+  }
+  else if (!panel->isFloating())
+  {
+    // Of no effect where the window's docks have not been laid out: a later look sees whether it was.
     window->resizeDocks({ panel }, { wide }, Qt::Horizontal);
   }
 }

@@ -133,7 +133,7 @@ void pqRockfallWindow::begin()
       rockfall::window::showUnits(window);
       rockfall::window::narrowChoices(window);
     });
-  // Once for each window that is wider than all before.
+  // Until it is, for each window that is wider than all before.
   this->connect(
     &this->Clock, &QTimer::timeout, [window] { rockfall::window::widenPanels(window); });
   this->connect(&this->Clock, &QTimer::timeout, &fitMarkers);
