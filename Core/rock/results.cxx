@@ -30,14 +30,30 @@ std::string fateName(Fate fate)
   return "moving";
 }
 
+namespace
+{
+
+/// What a rock had to give, J: what it released, what other rocks gave it, and a fall by its own size,
+/// as what lies still has released nothing to speak of.
+double energyHad(const TrajectorySummary& summary, double gravity)
+{
+  const EnergyAudit& e = summary.energy;
+  return std::max(0.0, e.released) + std::max(0.0, -e.exchanged) +
+    gravity * summary.mass * std::cbrt(summary.volume);
+}
+
+} // namespace
+
 double gainFromNowhere(const TrajectorySummary& summary, double gravity)
 {
   const EnergyAudit& e = summary.energy;
   const double taken = e.friction + e.restitution + e.vibration + e.damping + e.scars + e.rolling;
-  // What lies still has released nothing to speak of: that of a fall by its own size, at least.
-  const double least = gravity * summary.mass * std::cbrt(summary.volume);
-  const double had = std::max(0.0, e.released) + std::max(0.0, -e.exchanged) + least;
-  return std::max({ 0.0, -taken, -e.numerical }) / had;
+  return std::max({ 0.0, -taken, -e.numerical }) / energyHad(summary, gravity);
+}
+
+double lossToNowhere(const TrajectorySummary& summary, double gravity)
+{
+  return std::max(0.0, summary.energy.numerical) / energyHad(summary, gravity);
 }
 
 namespace

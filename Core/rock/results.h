@@ -167,6 +167,8 @@ struct Trajectory
 /// Energy that a rock has got from nowhere, of what it released and other rocks gave it: from the
 /// slope, which has none to give, or from the numerics; 0: none. `gravity`: m/s².
 double gainFromNowhere(const TrajectorySummary& summary, double gravity);
+/// The same of energy that it has lost to nowhere, by the numerics.
+double lossToNowhere(const TrajectorySummary& summary, double gravity);
 
 /// Books an impact, and keeps it as an event where a list is asked for.
 void noteImpact(Trajectory& trajectory, const ImpactEvent& event, bool keep);

@@ -127,16 +127,22 @@ std::vector<std::string> brokenNotes(
     " m³) and is not followed" };
 }
 
-std::vector<std::string> gainedNotes(const GainedRocks& gained)
+std::vector<std::string> unclosedNotes(const UnclosedBooks& books)
 {
-  if (gained.gained == 0)
+  std::vector<std::string> notes;
+  const auto tell = [&](std::int64_t rocks, const char* how, const char* what)
   {
-    return {};
-  }
-  return { std::to_string(gained.gained) + " of " + std::to_string(gained.rocks) +
-    " rocks got more energy from nowhere than " + numberText(100.0 * GainedRocks::kTold) +
-    " % of what they had (EnergyNumerical, or losses on the slope, below 0): they are too fast; "
-    "give a smaller TimeStep" };
+    if (rocks > 0)
+    {
+      notes.push_back(std::to_string(rocks) + " of " + std::to_string(books.rocks) + " rocks " +
+        how + " nowhere than " + numberText(100.0 * UnclosedBooks::kTold) +
+        " % of what they had (" + what + "; give a smaller TimeStep");
+    }
+  };
+  tell(books.gained, "got more energy from",
+    "EnergyNumerical, or losses on the slope, below 0): they are too fast");
+  tell(books.lost, "lost more energy to", "EnergyNumerical above 0): they stop too soon");
+  return notes;
 }
 
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks)

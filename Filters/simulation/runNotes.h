@@ -41,8 +41,8 @@ void tellAlike(const Terrain& terrain, std::span<const Rock> rocks, int iteratio
 std::vector<std::string> brokenNotes(
   const BrokenRocks& broken, const SimulationParameters& parameters);
 
-/// The note on rocks that got energy from nowhere.
-std::vector<std::string> gainedNotes(const GainedRocks& gained);
+/// The notes on rocks that got energy from nowhere, or lost it there.
+std::vector<std::string> unclosedNotes(const UnclosedBooks& books);
 
 /// Note of the first rank on blocks that were pushed apart.
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks);

@@ -25,13 +25,18 @@ void BrokenRocks::add(const TrajectorySummary& summary)
   }
 }
 
-void GainedRocks::add(const TrajectorySummary& summary, double gravity)
+void UnclosedBooks::add(const TrajectorySummary& summary, double gravity)
 {
   const bool whole = summary.piece == 0;
   this->rocks += whole ? 1 : 0;
-  const bool told = this->last && !whole;
-  this->last = told || gainFromNowhere(summary, gravity) > kTold;
-  this->gained += this->last && !told ? 1 : 0;
+  const auto count = [whole](bool is, bool& last, std::int64_t& counted)
+  {
+    const bool told = last && !whole;
+    last = told || is;
+    counted += last && !told ? 1 : 0;
+  };
+  count(gainFromNowhere(summary, gravity) > kTold, this->lastGained, this->gained);
+  count(lossToNowhere(summary, gravity) > kTold, this->lastLost, this->lost);
 }
 
 RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)
@@ -48,7 +53,7 @@ void RunSink::consume(Trajectory&& trajectory)
 {
   hash_.add(trajectory.summary.hash);
   broken_.add(trajectory.summary);
-  gained_.add(trajectory.summary, gravity_);
+  unclosed_.add(trajectory.summary, gravity_);
   rows_.append(trajectory.summary);
   impacts_.append(trajectory.summary, trajectory.impacts);
   structures_.append(trajectory.summary, trajectory.structures);

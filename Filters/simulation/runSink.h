@@ -45,12 +45,14 @@ struct BrokenRocks
   void add(const TrajectorySummary& summary);
 };
 
-/// Rocks that got energy from nowhere, they or one of their pieces, over all iterations.
-struct GainedRocks
+/// Rocks whose energy came from nowhere or went there, they or one of their pieces, over all iterations.
+struct UnclosedBooks
 {
-  static constexpr double kTold = 0.05; ///< Share of what one had: up to 2.5 % too fast.
-  std::int64_t rocks = 0, gained = 0;   ///< All of them; those that gained more.
-  bool last = false;                    ///< The rock that was added last is one of those.
+  static constexpr double kTold = 0.05; ///< Share of what one had: 2.5 % of its speed.
+  std::int64_t rocks = 0;               ///< All of them.
+  std::int64_t gained = 0, lost = 0;    ///< Those that gained or lost more.
+  bool lastGained = false;              ///< The rock that was added last is one of those.
+  bool lastLost = false;
 
   /// Summary of a rock, or of a piece of the last one. `gravity`: m/s².
   void add(const TrajectorySummary& summary, double gravity);
@@ -74,7 +76,7 @@ public:
   /// Trajectories of `wholeIteration`, with all samples.
   std::vector<Trajectory>& whole() { return whole_; }
   const BrokenRocks& broken() const { return broken_; }
-  const GainedRocks& gained() const { return gained_; }
+  const UnclosedBooks& unclosed() const { return unclosed_; }
 
 private:
   KeptParts kept_;
@@ -85,7 +87,7 @@ private:
   StateHash hash_;
   std::vector<Trajectory> whole_;
   BrokenRocks broken_;
-  GainedRocks gained_;
+  UnclosedBooks unclosed_;
   double gravity_; ///< m/s²
 };
 

@@ -405,4 +405,12 @@ bool refreshContact(const PlacedBlock& rock, const SurfacePatch& patch, Contact&
   return there;
 }
 
+void joinSprings(Contact& contact, const Contact& other)
+{
+  const double ratio =
+    contact.stiffness > 0.0 ? std::sqrt(other.stiffness / contact.stiffness) : 1.0;
+  contact.offset =
+    contact.distance + std::hypot(std::min(0.0, contact.gap()), std::min(0.0, other.gap()) * ratio);
+}
+
 } // namespace rockfall

@@ -16,4 +16,7 @@ namespace rockfall
 /// feature with nothing there to take over.
 bool refreshContact(const PlacedBlock& rock, const SurfacePatch& patch, Contact& contact);
 
+/// One spring along the normal with the energy of two, where contacts have come to one place.
+void joinSprings(Contact& contact, const Contact& other);
+
 } // namespace rockfall

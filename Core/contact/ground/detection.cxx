@@ -201,11 +201,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
     }
     else
     {
-      // Two have come to the same place: one spring with the energy of both.
-      twin->offset = twin->distance +
-        std::hypot(std::min(0.0, twin->gap()),
-          std::min(0.0, c.gap()) *
-            (twin->stiffness > 0.0 ? std::sqrt(c.stiffness / twin->stiffness) : 1.0));
+      joinSprings(*twin, c); // both have come to the same place
     }
   }
   contacts.resize(kept);

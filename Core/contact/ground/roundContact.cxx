@@ -1,5 +1,6 @@
 #include "contact/ground/roundContact.h"
 
+#include "contact/ground/contactTransfer.h"
 #include "contact/ground/motion.h"
 #include "geometry/roundBody.h"
 #include "law/settings.h"
@@ -202,6 +203,66 @@ const std::vector<int>& numbersOf(const CandidatePairs& candidates)
   return numbers;
 }
 
+/// Gives each touch the contact that goes over to it, −1: none. It is the one with the nearest normal,
+/// as that turns no faster than the body rolls; the nearest pair of all first, or a place that is new
+/// takes what its neighbour carries.
+void pairByNormal(
+  const std::vector<Touch>& touches, const std::vector<Contact>& carry, std::vector<int>& taken)
+{
+  taken.assign(touches.size(), -1);
+  const auto isLeft = [&](std::size_t contact)
+  { return std::find(taken.begin(), taken.end(), int(contact)) == taken.end(); };
+  for (;;)
+  {
+    double nearest = kSmoothTurn;
+    std::size_t touch = touches.size(), contact = 0;
+    for (std::size_t i = 0; i < touches.size(); ++i)
+    {
+      for (std::size_t k = 0; taken[i] < 0 && k < carry.size(); ++k)
+      {
+        const double turn = touches[i].normal.dot(carry[k].normal);
+        if (turn > nearest && isLeft(k))
+        {
+          nearest = turn;
+          touch = i;
+          contact = k;
+        }
+      }
+    }
+    if (touch == touches.size())
+    {
+      return;
+    }
+    taken[touch] = int(contact);
+  }
+}
+
+/// Where two places become one, the spring that goes on holds the energy of both.
+void mergeLeft(
+  const std::vector<Touch>& touches, const std::vector<int>& taken, std::vector<Contact>& carry)
+{
+  for (std::size_t k = 0; k < carry.size(); ++k)
+  {
+    const Contact& left = carry[k];
+    double nearest = kSmoothTurn;
+    int next = -1;
+    for (std::size_t i = 0; i < touches.size(); ++i)
+    {
+      const double turn = touches[i].normal.dot(left.normal);
+      if (taken[i] >= 0 && turn > nearest)
+      {
+        nearest = turn;
+        next = taken[i];
+      }
+    }
+    if (next < 0 || std::find(taken.begin(), taken.end(), int(k)) != taken.end())
+    {
+      continue;
+    }
+    joinSprings(carry[std::size_t(next)], left);
+  }
+}
+
 } // namespace
 
 void gatherRound(
@@ -233,41 +294,38 @@ void gatherRound(
 void updateRound(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts)
 {
-  thread_local std::vector<Contact> olds;
-  olds.clear();
-  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(olds),
+  thread_local std::vector<Contact> carry;
+  carry.clear();
+  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(carry),
     [](const Contact& c) { return c.closed(); });
-  contacts.clear();
+  thread_local std::vector<Touch> touches;
+  touches.clear();
   visitTouches(Round(rock, patch), numbersOf(candidates), reach,
-    [&](const Touch& touch)
-    {
-      const SurfacePatch::Triangle& t = patch.triangles[std::size_t(touch.triangle)];
-      // One that carries goes over to the place with the nearest normal: it turns no faster than
-      // the body rolls.
-      auto old = std::max_element(olds.begin(), olds.end(),
-        [&](const Contact& a, const Contact& b)
-        { return touch.normal.dot(a.normal) < touch.normal.dot(b.normal); });
-      const bool goesOn = old != olds.end() && touch.normal.dot(old->normal) > kSmoothTurn;
-      Contact& c = contacts.emplace_back();
-      if (goesOn)
-      {
-        c = *old;
-        olds.erase(old);
-      }
-      const double gap = c.gap();
-      c.kind = ContactKind::VertexFace;
-      c.rockFeature = -1;
-      c.patchFeature = touch.triangle;
-      c.surfaceFeature = t.key;
-      c.cfe = t.cfe;
-      c.normal = touch.normal;
-      c.point = touch.point;
-      c.distance = touch.distance;
-      c.slip -= touch.normal.dot(c.slip) * touch.normal;
-      // The step has conserved energy with the gap that it predicted. Where the ground falls away
-      // from the plane of the step the spring gives way; nothing is made where it does not.
-      c.offset = goesOn ? std::min(c.offset, c.distance - gap) : std::min(0.0, c.distance);
-    });
+    [&](const Touch& touch) { touches.push_back(touch); });
+  thread_local std::vector<int> taken;
+  pairByNormal(touches, carry, taken);
+  mergeLeft(touches, taken, carry);
+  contacts.clear();
+  for (std::size_t i = 0; i < touches.size(); ++i)
+  {
+    const Touch& touch = touches[i];
+    const SurfacePatch::Triangle& t = patch.triangles[std::size_t(touch.triangle)];
+    const bool goesOn = taken[i] >= 0;
+    Contact& c = contacts.emplace_back(goesOn ? carry[std::size_t(taken[i])] : Contact{});
+    const double gap = c.gap();
+    c.kind = ContactKind::VertexFace;
+    c.rockFeature = -1;
+    c.patchFeature = touch.triangle;
+    c.surfaceFeature = t.key;
+    c.cfe = t.cfe;
+    c.normal = touch.normal;
+    c.point = touch.point;
+    c.distance = touch.distance;
+    c.slip -= touch.normal.dot(c.slip) * touch.normal;
+    // The step has conserved energy with the gap that it predicted. On an edge or a node the body
+    // turns away from the plane of the step; a spring that gave way there would lose what it holds.
+    c.offset = goesOn ? c.distance - gap : std::min(0.0, c.distance);
+  }
 }
 
 double roundTimeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,

@@ -208,6 +208,47 @@ TEST(RoundBodies, EllipsoidsKeepTheirEnergyAndComeToRestFlat)
   EXPECT_NEAR(t.summary.stop.z(), 100.35, 0.01);
 }
 
+/// Cells finer than the body: an impact goes over several edges and nodes, and what its springs hold goes
+/// over with it.
+TEST(RoundBodies, KeepTheirBooksOnGroundFinerThanTheyAre)
+{
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> rough(0.0, 0.05); // m
+  const auto benches = [&](double x, double)
+  { return 60.0 - 0.3 * x - 8.0 * std::clamp(0.5 * (x - 20.0), 0.0, 1.0) + rough(random); };
+  for (const bool elastic : { false, true })
+  {
+    const Terrain ground =
+      makeSlope(161, 0.5, benches, elastic ? material(1.0, 0.0) : material(0.5, 35.0));
+    for (const double volume : { 1.0, 20.0 })
+    {
+      const double size = std::cbrt(volume);
+      for (const Polyhedron& shape :
+        { makeShape(Shape::Sphere, volume), makeEllipsoid(size * Vec3(1.6, 1.2, 1.0)) })
+      {
+        SimulationParameters p;
+        p.endTime = elastic ? 5.0 : 20.0;
+        for (int k = 0; k < 10; ++k)
+        {
+          Rock rock;
+          rock.shape = shape;
+          rock.position = Vec3(15.0, 20.0 + 4.0 * k, 0.0);
+          rock.position.z() = ground.elevation(15.0, rock.position.y()) + size;
+          rock.velocity = Vec3(2.0, 0.0, 0.0);
+          const EnergyAudit e = simulate(ground, rock, p).summary.energy;
+          EXPECT_LT(std::abs(e.numerical), 0.01 * e.released)
+            << elastic << ' ' << volume << ' ' << k;
+          EXPECT_GT(e.restitution, -0.01 * e.released) << elastic << ' ' << volume << ' ' << k;
+          if (elastic)
+          {
+            EXPECT_GT(e.kinetic, 0.99 * e.released) << volume << ' ' << k;
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(RoundBodies, DoNotCollide)
 {
   SimulationParameters p;
