@@ -80,39 +80,35 @@ struct Touch
 class Round
 {
 public:
-  Round(const PlacedBlock& rock, const SurfacePatch& patch)
+  Round(const SurfacePatch& patch, const Vec3& centre, const Mat3& axes)
     : patch_(patch)
-    , centre_(rock.position())
-    , axes_(roundAxes(rock))
+    , centre_(centre)
+    , axes_(axes)
     , inverse_(axes_.inverse())
+  {
+  }
+  Round(const PlacedBlock& rock, const SurfacePatch& patch)
+    : Round(patch, rock.position(), roundAxes(rock))
   {
   }
 
   Touch touch(int triangle) const
   {
-    const SurfacePatch::Triangle& t = patch_.triangles[std::size_t(triangle)];
-    const auto seen = [&](int k) -> Vec3
-    { return inverse_ * (patch_.nodes[std::size_t(t.nodes[k])].position - centre_); };
-    Touch touch;
-    touch.triangle = triangle;
-    touch.at = nearestTo(seen(0), seen(1), seen(2));
-    touch.rho = touch.at.place.norm();
-    if (touch.at.first < 0)
+    return this->touchAt(triangle,
+      nearestTo(this->seen(triangle, 0), this->seen(triangle, 1), this->seen(triangle, 2)));
+  }
+
+  /// On the same face, on the line of the same edge, or at the same node.
+  Touch touchOn(const Touch& other) const
+  {
+    Nearest at = other.at;
+    if (at.first >= 0)
     {
-      // A plane has a normal, wherever the centre is.
-      const double height = t.normal.dot(centre_) - t.offset;
-      const double reach = roundReach(axes_, t.normal);
-      touch.normal = t.normal;
-      touch.distance = height - reach;
-      touch.point = centre_ - axes_ * (axes_.transpose() * t.normal) / reach;
-      return touch;
+      at.place = this->seen(other.triangle, at.first);
+      const Vec3 along = this->seen(other.triangle, at.last) - at.place;
+      at.place -= along * (along.dot(at.place) / std::max(along.squaredNorm(), 1e-300));
     }
-    const Vec3 out = -(inverse_.transpose() * touch.at.place);
-    const double size = std::max(out.norm(), std::numeric_limits<double>::min());
-    touch.normal = out / size;
-    touch.distance = touch.rho * (touch.rho - 1.0) / size;
-    touch.point = centre_ + axes_ * (touch.at.place / std::max(touch.rho, 1e-300));
-    return touch;
+    return this->touchAt(other.triangle, at);
   }
 
   /// Whether the body is on the outer side of the triangle there.
@@ -134,6 +130,38 @@ public:
   }
 
 private:
+  /// Corner of a triangle, in the axes of the unit sphere.
+  Vec3 seen(int triangle, int corner) const
+  {
+    const SurfacePatch::Triangle& t = patch_.triangles[std::size_t(triangle)];
+    return inverse_ * (patch_.nodes[std::size_t(t.nodes[corner])].position - centre_);
+  }
+
+  Touch touchAt(int triangle, const Nearest& at) const
+  {
+    const SurfacePatch::Triangle& t = patch_.triangles[std::size_t(triangle)];
+    Touch touch;
+    touch.triangle = triangle;
+    touch.at = at;
+    touch.rho = touch.at.place.norm();
+    if (touch.at.first < 0)
+    {
+      // A plane has a normal, wherever the centre is.
+      const double height = t.normal.dot(centre_) - t.offset;
+      const double reach = roundReach(axes_, t.normal);
+      touch.normal = t.normal;
+      touch.distance = height - reach;
+      touch.point = centre_ - axes_ * (axes_.transpose() * t.normal) / reach;
+      return touch;
+    }
+    const Vec3 out = -(inverse_.transpose() * touch.at.place);
+    const double size = std::max(out.norm(), std::numeric_limits<double>::min());
+    touch.normal = out / size;
+    touch.distance = touch.rho * (touch.rho - 1.0) / size;
+    touch.point = centre_ + axes_ * (touch.at.place / std::max(touch.rho, 1e-300));
+    return touch;
+  }
+
   const SurfacePatch& patch_;
   Vec3 centre_;
   Mat3 axes_, inverse_;
@@ -325,6 +353,25 @@ void updateRound(const PlacedBlock& rock, const SurfacePatch& patch,
     // The step has conserved energy with the gap that it predicted. On an edge or a node the body
     // turns away from the plane of the step; a spring that gave way there would lose what it holds.
     c.offset = goesOn ? c.distance - gap : std::min(0.0, c.distance);
+  }
+}
+
+void turnToMiddle(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  double h, std::vector<Contact>& contacts)
+{
+  const Vec3 spin = state.angularVelocity();
+  const double turn = 0.5 * h * spin.norm();
+  const Mat3 turned = turn > 0.0
+    ? Mat3(Eigen::AngleAxisd(turn, spin.normalized()).toRotationMatrix())
+    : Mat3(Mat3::Identity());
+  const Vec3 centre = rock.position() + 0.5 * h * state.velocity;
+  const Round now(rock, patch), middle(patch, centre, turned * roundAxes(rock));
+  for (Contact& c : contacts)
+  {
+    const Touch touch = middle.touchOn(now.touch(c.patchFeature));
+    c.normal = touch.normal;
+    c.point = rock.position() + (touch.point - centre);
+    c.slip -= touch.normal.dot(c.slip) * touch.normal;
   }
 }
 

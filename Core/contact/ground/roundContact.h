@@ -28,6 +28,10 @@ void gatherRound(
   const PlacedBlock& rock, const SurfacePatch& patch, double distance, CandidatePairs& candidates);
 void updateRound(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts);
+/// Normals and points of contacts as they are in the middle of a step of h (s), which then meets the
+/// curvature of the body, and that of edges and nodes, to the second order. The body stays where it is.
+void turnToMiddle(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  double h, std::vector<Contact>& contacts);
 double roundTimeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   const CandidatePairs& candidates, double gravity, double horizon);
 Clearance roundClearance(const PlacedBlock& rock, const BlockState& state,

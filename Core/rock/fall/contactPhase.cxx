@@ -4,6 +4,7 @@
 #include "block/flight.h"
 #include "contact/ground/detection.h"
 #include "contact/ground/motion.h"
+#include "contact/ground/roundContact.h"
 #include "contact/ground/timeToTouch.h"
 #include "contact/impactMode.h"
 #include "law/cohesion.h"
@@ -318,6 +319,10 @@ void stayInContact(Fall& fall)
         h = touchdown;
         setNewSprings(fall, h);
       }
+    }
+    if (isRound(body.placed)) // it rolls off the plane that it touches
+    {
+      turnToMiddle(body.placed, body.state, fall.ground.patch(), h, body.contacts);
     }
     if (isPressedIn(fall, kind))
     {

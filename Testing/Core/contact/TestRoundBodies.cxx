@@ -1,5 +1,6 @@
 // Spheres and ellipsoids: mass, contact with planes, edges and nodes, rolling, by closed forms.
 
+#include "contact/ground/detection.h"
 #include "contact/ground/roundContact.h"
 #include "geometry/roundBody.h"
 #include "geometry/shapes.h"
@@ -206,6 +207,84 @@ TEST(RoundBodies, EllipsoidsKeepTheirEnergyAndComeToRestFlat)
   const Trajectory t = simulate(makePlane(21, 100.0, 0.0, 0.0, rolling(0.3, 35.0, 0.05)), egg, p);
   EXPECT_EQ(t.summary.fate, Fate::Rested);
   EXPECT_NEAR(t.summary.stop.z(), 100.35, 0.01);
+}
+
+/// What a step of h predicts of a gap with the normal and the point of its middle is off by h³: by h² with
+/// those of its start.
+TEST(RoundBodies, GapsAreToldToTheSecondOrderOfAStep)
+{
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const Terrain ground = makeSlope(
+    9, 2.0, [&](double, double) { return u(random); }, material(0.5, 35.0));
+  const Block block(makeEllipsoid(Vec3(1.6, 1.2, 1.0)), 2500.0, 1e10, 0.1);
+  SurfacePatch patch;
+  gatherPatch(Surface::asSurveyed(ground), 0.0, 16.0, 0.0, 16.0, patch);
+  const auto contactsAt = [&](const BlockState& state)
+  {
+    PlacedBlock rock;
+    rock.place(block, state);
+    CandidatePairs candidates;
+    gatherCandidates(rock, state, patch, 3.0, candidates);
+    std::vector<Contact> contacts;
+    updateContacts(rock, patch, candidates, 3.0, contacts);
+    return contacts;
+  };
+  double coarse = 0.0, fine = 0.0, plain = 0.0;
+  int seen = 0;
+  for (int trial = 0; trial < 40; ++trial)
+  {
+    BlockState state;
+    state.position = Vec3(8.0 + u(random), 8.0 + u(random), 2.5);
+    state.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    state.velocity = 4.0 * Vec3(u(random), u(random), u(random));
+    const Vec3 turn = 4.0 * Vec3(u(random), u(random), u(random)); // world, rad/s
+    state.spin = state.orientation.conjugate() * turn;
+    Contact at;
+    for (int k = 0; k < 30; ++k) // down until it touches
+    {
+      const std::vector<Contact> over = contactsAt(state);
+      at = *std::min_element(over.begin(), over.end(),
+        [](const Contact& x, const Contact& y) { return x.distance < y.distance; });
+      state.position.z() -= at.distance;
+    }
+    // It goes along the ground: far from it, distances of an ellipsoid are not exact.
+    const Vec3 closing = state.velocity + turn.cross(at.point - state.position);
+    state.velocity -= at.normal.dot(closing) * at.normal;
+    const auto miss = [&](double h, bool middle)
+    {
+      BlockState end = state;
+      end.position += h * state.velocity;
+      end.orientation =
+        Quat(Eigen::AngleAxisd(h * turn.norm(), turn.normalized())) * state.orientation;
+      std::vector<Contact> told = { at };
+      PlacedBlock rock;
+      rock.place(block, state);
+      if (middle)
+      {
+        turnToMiddle(rock, state, patch, h, told);
+      }
+      const Vec3 speed = state.velocity + turn.cross(told[0].point - state.position);
+      const double gap = at.distance + h * told[0].normal.dot(speed);
+      double least = 1.0;
+      for (const Contact& c : contactsAt(end))
+      {
+        least = c.surfaceFeature == at.surfaceFeature ? std::abs(c.distance - gap) : least;
+      }
+      return least;
+    };
+    const double whole = miss(0.02, true), half = miss(0.01, true);
+    if (at.distance < 1e-9 && whole < 0.1 && half < 0.1) // at the same place of the ground still
+    {
+      coarse += whole;
+      fine += half;
+      plain += miss(0.02, false);
+      ++seen;
+    }
+  }
+  EXPECT_GT(seen, 20);
+  EXPECT_GT(coarse / fine, 7.0);
+  EXPECT_GT(plain, 20.0 * coarse);
 }
 
 /// Cells finer than the body: an impact goes over several edges and nodes, and what its springs hold goes
