@@ -167,6 +167,23 @@ inline RandomScene randomScene(std::uint64_t seed, int most, double seconds)
   return scene;
 }
 
+/// The first rock of a random scene, alone, as a sphere or an ellipsoid about as large.
+inline RandomScene roundScene(std::uint64_t seed, double seconds)
+{
+  RandomScene scene = randomScene(seed, 2, seconds);
+  scene.rocks.resize(1);
+  SimulationParameters& p = scene.parameters;
+  p.rockRockContact = p.pushRocksApart = false;
+  SceneDraw draw(~seed);
+  Rock& rock = scene.rocks.front();
+  const double r = rock.shape.radius();
+  rock.shape = makeEllipsoid(2.0 * r *
+    (draw.oneIn(2) ? Vec3(1.0, 1.0, 1.0) : Vec3(1.0, draw.even(0.3, 1.0), draw.even(0.25, 1.0))));
+  p.normalPenalty =
+    std::max(p.normalPenalty, 60.0 * rock.density * rock.shape.integrals().volume * p.gravity / r);
+  return scene;
+}
+
 /// The shortest way (m) from a point under the slope out of it; 0 over it.
 inline double depthUnder(const Terrain& terrain, const Vec3& point)
 {
@@ -218,7 +235,7 @@ struct SceneOutcome
   double heard = 0.0;    ///< After what time that was heard, s.
   bool sameBits = true;  ///< On one thread and on two.
   double released = 0.0; ///< Energy that gravity released, J.
-  double made = 0.0;     ///< Energy that came from nowhere, J.
+  double made = 0.0;     ///< Energy that came from nowhere, J; < 0: that was lost to it.
   double gained = 0.0;   ///< What rocks have and gave away beyond what gravity released of them, J.
   double tooDeep = 0.0;  ///< The deepest vertex, beyond what its spring explains, of the radius.
   std::string worst;     ///< Which one that is.

@@ -1,6 +1,7 @@
 #include "contact/ground/roundContact.h"
 
 #include "contact/ground/contactTransfer.h"
+#include "contact/ground/features.h"
 #include "contact/ground/motion.h"
 #include "geometry/roundBody.h"
 #include "law/settings.h"
@@ -111,13 +112,14 @@ public:
     return this->touchAt(other.triangle, at);
   }
 
-  /// Whether the body is on the outer side of the triangle there.
+  /// Whether the body is on the outer side of the triangle there, or has slipped under the slope through
+  /// it. Beside a narrow ridge it is on the inner side of the far flank, and never came in there.
   bool isOutside(const Touch& touch) const
   {
     const SurfacePatch::Triangle& t = patch_.triangles[std::size_t(touch.triangle)];
-    return touch.at.first < 0
-      ? touch.triangle < patch_.slopeTriangles || t.normal.dot(centre_) > t.offset
-      : touch.normal.dot(t.normal) > 0.0;
+    return touch.at.first < 0 ? t.normal.dot(centre_) > t.offset ||
+        (touch.triangle < patch_.slopeTriangles && this->isUnderSlope())
+                              : touch.normal.dot(t.normal) > 0.0;
   }
 
   /// Whether a triangle has the edge or the node of another one's touch.
@@ -130,6 +132,18 @@ public:
   }
 
 private:
+  bool isUnderSlope() const
+  {
+    if (!under_)
+    {
+      const auto end = patch_.triangles.begin() + patch_.slopeTriangles;
+      under_ = std::any_of(patch_.triangles.begin(), end,
+        [this](const SurfacePatch::Triangle& t)
+        { return t.normal.dot(centre_) < t.offset && isStraightOver(patch_, t, centre_); });
+    }
+    return *under_;
+  }
+
   /// Corner of a triangle, in the axes of the unit sphere.
   Vec3 seen(int triangle, int corner) const
   {
@@ -165,6 +179,7 @@ private:
   const SurfacePatch& patch_;
   Vec3 centre_;
   Mat3 axes_, inverse_;
+  mutable std::optional<bool> under_; ///< Once it has been asked for.
 };
 
 /// visit(touch) of those within a reach (m) that no triangle which shares the place has nearer.

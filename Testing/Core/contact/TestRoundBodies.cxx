@@ -209,6 +209,45 @@ TEST(RoundBodies, EllipsoidsKeepTheirEnergyAndComeToRestFlat)
   EXPECT_NEAR(t.summary.stop.z(), 100.35, 0.01);
 }
 
+/// Beside a ridge of 2 m that is 1 m wide a ball is on the inner side of the far flank; one that has
+/// slipped under the slope is so, too, and has to be found.
+TEST(RoundBodies, AreNotTouchedByTheFarFlankOfARidge)
+{
+  const Terrain ground = makeSlope(
+    21, 0.5, [](double x, double) { return std::max(0.0, 2.0 - 4.0 * std::abs(x - 5.0)); },
+    material(0.5, 35.0));
+  const Block block(makeShape(Shape::Sphere, 0.004), 2500.0, 1e10, 0.1);
+  SurfacePatch patch;
+  gatherPatch(Surface::asSurveyed(ground), 0.0, 10.0, 0.0, 10.0, patch);
+  const auto contactsAt = [&](const Vec3& place)
+  {
+    BlockState state;
+    state.position = place;
+    PlacedBlock rock;
+    rock.place(block, state);
+    CandidatePairs candidates;
+    gatherCandidates(rock, state, patch, 0.05, candidates);
+    std::vector<Contact> contacts;
+    updateContacts(rock, patch, candidates, 0.05, contacts);
+    return contacts;
+  };
+  for (const double height : { 0.2, 0.5, 1.0 })
+  {
+    const double flank = 5.0 - 0.25 * (2.0 - height); // x there
+    const double aside = 1.02 * block.radius() / std::cos(std::atan(0.25));
+    const std::vector<Contact> beside = contactsAt(Vec3(flank - aside, 5.2, height));
+    ASSERT_FALSE(beside.empty());
+    for (const Contact& c : beside)
+    {
+      EXPECT_LE(c.normal.x(), 1e-9) << height;
+      EXPECT_GT(c.distance, 0.0) << height;
+    }
+  }
+  const std::vector<Contact> under = contactsAt(Vec3(2.1, 5.2, -0.3));
+  ASSERT_FALSE(under.empty());
+  EXPECT_NEAR(under.front().distance, -0.3 - block.radius(), 1e-9);
+}
+
 /// What a step of h predicts of a gap with the normal and the point of its middle is off by h³: by h² with
 /// those of its start.
 TEST(RoundBodies, GapsAreToldToTheSecondOrderOfAStep)
