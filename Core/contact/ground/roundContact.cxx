@@ -117,9 +117,12 @@ public:
   bool isOutside(const Touch& touch) const
   {
     const SurfacePatch::Triangle& t = patch_.triangles[std::size_t(touch.triangle)];
-    return touch.at.first < 0 ? t.normal.dot(centre_) > t.offset ||
-        (touch.triangle < patch_.slopeTriangles && this->isUnderSlope())
-                              : touch.normal.dot(t.normal) > 0.0;
+    if (touch.at.first >= 0)
+    {
+      return touch.normal.dot(t.normal) > 0.0;
+    }
+    return t.normal.dot(centre_) > t.offset ||
+      (touch.triangle < patch_.slopeTriangles && this->isUnderSlope());
   }
 
   /// Whether a triangle has the edge or the node of another one's touch.
@@ -132,6 +135,7 @@ public:
   }
 
 private:
+  /// Of its centre.
   bool isUnderSlope() const
   {
     if (!under_)
