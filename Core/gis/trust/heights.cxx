@@ -79,7 +79,12 @@ public:
     double metres = unit ? *unit : axis ? axis->metres : 1.0;
     if (!unit)
     {
-      requireUnitOfSources(dataset_, band_, metres, fileName_);
+      if (const std::size_t unasked = requireUnitOfSources(dataset_, band_, metres, fileName_))
+      {
+        notes_.push_back("The heights have no unit and were taken to be in " +
+          (metres == 1.0 ? "metres" : unitsText(metres)) + "; " + std::to_string(unasked) +
+          " of the raster's sources were not asked for theirs.");
+      }
     }
     if (metres != 1.0)
     {

@@ -13,6 +13,7 @@
 #include <gdal_priv.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -100,13 +101,18 @@ public:
 
   void look(const std::vector<Source>& sources, int depth)
   {
-    for (const Source& source : sources)
+    // Spread over all of them: tiles of one survey lie together.
+    const std::size_t every = (sources.size() + kMostSources - 1) / kMostSources;
+    for (std::size_t k = 0; k < sources.size(); ++k)
     {
       stayWanted();
-      if (++count_ > kMostSources)
+      if (k % every != 0 || asked_ == kMostSources)
       {
-        return;
+        ++unasked_;
+        continue;
       }
+      ++asked_;
+      const Source& source = sources[k];
       // The guards of the whole file hold for its sources: it was looked into, and stays local.
       const DatasetPtr tile(GDALDataset::Open(
         source.file.c_str(), GDAL_OF_READONLY | GDAL_OF_RASTER, openingDrivers()));
@@ -134,6 +140,8 @@ public:
     }
   }
 
+  std::size_t unasked() const { return unasked_; }
+
   void require(int band) const
   {
     if (other_)
@@ -149,7 +157,7 @@ public:
 private:
   double metres_;
   const std::string& fileName_;
-  int count_ = 0;
+  std::size_t asked_ = 0, unasked_ = 0;
   std::optional<std::string> same_, other_; ///< "west.tif has no unit"
   std::string otherUnit_;
 };
@@ -174,12 +182,13 @@ std::string namedUnitOf(GDALDataset& dataset, GDALRasterBand& band)
   return unit;
 }
 
-void requireUnitOfSources(
+std::size_t requireUnitOfSources(
   GDALDataset& dataset, GDALRasterBand& band, double metres, const std::string& fileName)
 {
   Units units(metres, fileName);
   units.look(sourcesOf(dataset, band.GetBand()), 1);
   units.require(band.GetBand());
+  return units.unasked();
 }
 
 } // namespace rockfall::gis

@@ -3,6 +3,7 @@
 #include "gis/raster/raster.h"
 #include "gisFiles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -154,6 +155,21 @@ TEST(RasterTiles, AMosaicOfMosaics)
     "<ScaleOffset>0</ScaleOffset><ScaleRatio>0.3048"
     "</ScaleRatio>");
   EXPECT_NEAR(readRaster(mosaic(10, changed)).heights[0], foot * height(600005.0, 5100075.0), 1e-4);
+}
+
+TEST(RasterTiles, MoreOfThemThanAreAskedForAUnit)
+{
+  const std::string west = source(tile("west", 0), 0);
+  std::string sources;
+  for (int k = 0; k < 501; ++k)
+  {
+    sources += west;
+  }
+  const RasterSurface s = readRaster(mosaic(10, sources));
+  EXPECT_TRUE(std::any_of(s.notes.begin(), s.notes.end(),
+    [](const std::string& note) {
+      return holds(note, { "taken to be in metres", "250 of the raster's sources" });
+    }));
 }
 
 TEST(RasterTiles, ATileThatIsGone)
