@@ -177,8 +177,13 @@ inline RandomScene roundScene(std::uint64_t seed, double seconds)
   SceneDraw draw(~seed);
   Rock& rock = scene.rocks.front();
   const double r = rock.shape.radius();
-  rock.shape = makeEllipsoid(2.0 * r *
-    (draw.oneIn(2) ? Vec3(1.0, 1.0, 1.0) : Vec3(1.0, draw.even(0.3, 1.0), draw.even(0.25, 1.0))));
+  Vec3 lengths(2.0 * r, 2.0 * r, 2.0 * r);
+  if (draw.oneIn(2))
+  {
+    lengths.y() *= draw.even(0.3, 1.0);
+    lengths.z() *= draw.even(0.25, 1.0);
+  }
+  rock.shape = makeEllipsoid(lengths);
   p.normalPenalty =
     std::max(p.normalPenalty, 60.0 * rock.density * rock.shape.integrals().volume * p.gravity / r);
   return scene;
