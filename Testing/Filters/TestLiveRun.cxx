@@ -33,9 +33,11 @@ protected:
   void AskUntilOver()
   {
     const Clock::time_point start = Clock::now();
-    while (std::string(this->Simulation->GetRunStatus()).rfind("running", 0) == 0 ||
-      std::string(this->Simulation->GetRunStatus()).rfind("stopping", 0) == 0)
+    for (bool over = false; !over;)
     {
+      // Asked before the last look: the run may end between the two.
+      const std::string status = this->Simulation->GetRunStatus();
+      over = status.rfind("running", 0) != 0 && status.rfind("stopping", 0) != 0;
       if (this->Simulation->GetNeedsUpdate())
       {
         this->Simulation->Update();
@@ -65,9 +67,10 @@ TEST_F(TestLiveRun, ComesToTheSameBits)
   const Clock::time_point start = Clock::now();
   live->Update();
   EXPECT_LT(since(start), 5.0); // seconds of work; nobody waits for all of it
-  while (std::string(live->GetRunStatus()).rfind("running", 0) == 0)
+  for (bool over = false; !over;)
   {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    over = std::string(live->GetRunStatus()).rfind("running", 0) != 0;
     if (live->GetNeedsUpdate())
     {
       live->Update();
