@@ -162,12 +162,12 @@ Terrain makeBiplanarSlope(double cellSize)
   return Terrain(std::move(geometry), std::move(heights));
 }
 
-bool Terrain::yields() const
+bool Terrain::isSoft(bool (YieldingGround::*how)() const) const
 {
   const int built = obstacles_ ? int(obstacles_->structures().materials.size()) : 0;
   for (int k = 0; k <= restitutionClasses_.count() + built; ++k)
   {
-    if (this->restitutionMaterial(k).yielding.yields())
+    if ((this->restitutionMaterial(k).yielding.*how)())
     {
       return true;
     }

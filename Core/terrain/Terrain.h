@@ -73,8 +73,9 @@ public:
       : number <= jointClasses_.count() ? jointClasses_.materials[std::size_t(number) - 1]
                                         : this->obstacleMaterial(number - jointClasses_.count());
   }
-  /// Whether any of the ground gives way under a rock.
-  bool yields() const;
+  /// Whether any of the ground yields to a rock, and whether it gives way (YieldingGround).
+  bool yields() const { return this->isSoft(&YieldingGround::yields); }
+  bool givesWay() const { return this->isSoft(&YieldingGround::givesWay); }
   /// For what the deviations of materials without a say of their own are drawn. To be called before
   /// the terrain is used.
   void setDeviationPer(DeviationPer per) { deviationPer_ = per; }
@@ -103,6 +104,7 @@ public:
   const Obstacles* obstacles() const { return obstacles_.get(); }
 
 private:
+  bool isSoft(bool (YieldingGround::*how)() const) const;
   /// Throws ParameterError if cells would have to be cut into too many.
   void findRefinement();
   int obstacleClass(std::int64_t cfe, int layerClasses) const;

@@ -86,11 +86,10 @@ void tellNewNets(const Terrain& terrain)
 
 void tellIdleImpulses(const Terrain& terrain, const SimulationParameters& parameters)
 {
-  if (parameters.impactResolution == ImpactResolution::Impulse && terrain.yields())
+  if (parameters.impactResolution == ImpactResolution::Impulse && terrain.givesWay())
   {
-    showNote("ImpactResolution Impulse has no effect: some of the ground yields, by scars, by "
-             "friction that hangs on slip or by rolling resistance, and springs resolve all "
-             "impacts on such a slope");
+    showNote("ImpactResolution Impulse has no effect: some of the ground gives way, by scars or by "
+             "friction that hangs on slip, and springs resolve all impacts on such a slope");
   }
 }
 

@@ -37,7 +37,7 @@ Fall::Fall(const Surface& s, const Rock& rock, const Block& block, const Simulat
   : surface(s)
   , parameters(p)
   , body(bodyOf(rock, block, p))
-  , impulses(this->body.stiff && !s.terrain().yields() &&
+  , impulses(this->body.stiff && !s.terrain().givesWay() &&
       p.impactResolution == ImpactResolution::Impulse && !isRound(block.shape().layout()))
   , springs(s, p, block)
   , structures(s)

@@ -5,6 +5,7 @@
 #include "rock/fall/Fall.h"
 #include "rock/fall/TouchSearch.h"
 #include "rock/fall/flightPhase.h"
+#include "rock/parts/rollingResistance.h"
 #include "rock/restitution.h"
 #include "solve/step/impulse.h"
 
@@ -43,6 +44,37 @@ bool partsFrom(const RockBody& body, std::span<const StruckPoint> touches)
   return std::all_of(touches.begin(), touches.end(),
     [&](const StruckPoint& touch)
     { return -approachOf(body.state, spin, touch.point, touch.normal) > body.restingSpeed; });
+}
+
+/// What rolling resistance takes of the motion that an impact leaves.
+void resistRollingAt(
+  Fall& fall, std::span<const StruckPoint> touches, std::span<const ImpulsePoint> points)
+{
+  RockBody& body = fall.body;
+  const Vec3 spin = body.state.angularVelocity();
+  Support support;
+  double most = 0.0, coefficient = 0.0;
+  for (std::size_t i = 0; i < touches.size(); ++i)
+  {
+    const ImpulsePoint& point = points[i];
+    const Vec3 speed = body.state.velocity + spin.cross(point.lever);
+    const Vec3 slip = speed - point.normal.dot(speed) * point.normal;
+    support.force += point.impulse;
+    support.sliding += slip.norm() > kQuietImpulse * body.restingSpeed ? point.impulse : 0.0;
+    support.point += point.impulse * touches[i].point;
+    if (point.impulse > most)
+    {
+      most = point.impulse;
+      coefficient = fall.surface.terrain()
+                      .restitutionMaterial(fall.surface.restitutionClass(touches[i].cfe))
+                      .yielding.rollingResistance;
+    }
+  }
+  if (coefficient > 0.0)
+  {
+    support.point /= support.force;
+    body.energy.rolling += resistRolling(body.block, support, coefficient, 1.0, body.state);
+  }
 }
 
 /// One impact at all these points, where the rock is. Whether there was one.
@@ -109,6 +141,7 @@ bool strike(Fall& fall, std::span<const StruckPoint> touches, bool carried)
     fall.impact.addImpulse(point.impulse * point.normal, point.impulse / fall.impact.duration(body),
       touches[i].cfe, touches[i].point);
   }
+  resistRollingAt(fall, touches, { points.data(), touches.size() });
   fall.impact.finish(body, fall.recorder, true, true);
   fall.recorder.afterJump(body, carried);
   fall.recorder.follow(body.state);

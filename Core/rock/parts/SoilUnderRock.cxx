@@ -266,7 +266,8 @@ bool SoilUnderRock::yieldInStep(RockBody& body, const StructuresOnWay& structure
     const double rolling = this->groundAt(*most, structures).rollingResistance;
     if (rolling > 0.0)
     {
-      body.energy.rolling += resistRolling(body.block, body.contacts, rolling, h, body.state);
+      body.energy.rolling +=
+        resistRolling(body.block, supportOf(body.contacts), rolling, h, body.state);
     }
   }
   return ploughed;

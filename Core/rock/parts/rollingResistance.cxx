@@ -10,13 +10,12 @@ namespace rockfall
 namespace
 {
 
-/// Where the slope carries a rock: the contacts' mean, weighted by their forces.
-struct Support
+double energyOf(const Block& block, const Vec3& velocity, const Vec3& spin)
 {
-  double force = 0.0;        ///< Normal, N.
-  double sliding = 0.0;      ///< The part of it that slides, N.
-  Vec3 point = Vec3::Zero(); ///< m
-};
+  return 0.5 * block.mass() * velocity.squaredNorm() + 0.5 * spin.dot(block.inertia() * spin);
+}
+
+} // namespace
 
 Support supportOf(const std::vector<Contact>& contacts)
 {
@@ -37,23 +36,15 @@ Support supportOf(const std::vector<Contact>& contacts)
   return support;
 }
 
-double energyOf(const Block& block, const Vec3& velocity, const Vec3& spin)
-{
-  return 0.5 * block.mass() * velocity.squaredNorm() + 0.5 * spin.dot(block.inertia() * spin);
-}
-
-} // namespace
-
 double rollingArm(const Block& block)
 {
   const double round = block.shape().layout().inside / block.radius();
   return round * std::cbrt(0.75 * block.volume() / std::numbers::pi);
 }
 
-double resistRolling(const Block& block, const std::vector<Contact>& contacts, double coefficient,
-  double h, BlockState& state)
+double resistRolling(
+  const Block& block, const Support& support, double coefficient, double h, BlockState& state)
 {
-  const Support support = supportOf(contacts);
   if (!(support.force > 0.0) || state.spin.isZero(0.0))
   {
     return 0.0;

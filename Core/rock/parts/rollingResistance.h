@@ -18,12 +18,24 @@ namespace rockfall
 /// its own.
 double rollingArm(const Block& block);
 
+/// Where the slope carries a rock: the contacts' mean, weighted by their forces. Of an impact that is an
+/// event, by their impulses.
+struct Support
+{
+  double force = 0.0;        ///< Normal, N.
+  double sliding = 0.0;      ///< The part of it that slides, N.
+  Vec3 point = Vec3::Zero(); ///< m
+};
+
+/// Of the mean forces of a step.
+Support supportOf(const std::vector<Contact>& contacts);
+
 /// Takes the moment's impulse of a step of `h` (s) from the motion and returns the energy that it
-/// took, J, ≥ 0. `coefficient`: μ_r. The contacts bring the mean normal forces of the step.
+/// took, J, ≥ 0. `coefficient`: μ_r. With impulses for forces h is 1.
 ///
 /// A rock that sticks turns about where the slope carries it, so that speed goes with the spin; one
 /// that slides loses spin alone. The rotation is never reversed.
-double resistRolling(const Block& block, const std::vector<Contact>& contacts, double coefficient,
-  double h, BlockState& state);
+double resistRolling(
+  const Block& block, const Support& support, double coefficient, double h, BlockState& state);
 
 } // namespace rockfall

@@ -42,12 +42,13 @@ void expectSame(const Mean& a, const Mean& b, double share, const char* what, Sh
 }
 
 /// 30° down, then flat, with nodes that scatter by 0.1 m.
-Terrain roughSlope(double restitution)
+Terrain roughSlope(double restitution, double rollingResistance)
 {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(0.0, 0.1);
   SurfaceMaterial m = material(restitution, 15.0);
   m.restitutionModel = RestitutionModel::NormalTangential;
+  m.yielding.rollingResistance = rollingResistance;
   return makeSlope(
     161, 1.0,
     [&](double x, double)
@@ -107,6 +108,59 @@ TEST(ImpulseImpacts, TouchesThatSpringsTakeForOneAreOne)
   }
 }
 
+namespace
+{
+
+/// `penalty`: of the springs, N/m.
+void expectThoseOfSprings(Shape shape, double e, double rollingResistance, double penalty)
+{
+  const Terrain slope = roughSlope(e, rollingResistance);
+  std::vector<Rock> rocks(160);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  for (std::size_t k = 0; k < rocks.size(); ++k)
+  {
+    Rock& rock = rocks[k];
+    rock.blockId = std::int64_t(k);
+    rock.shape = makeShape(shape, 1.0);
+    const double x = 5.0 + 2.0 * u(random), y = 40.0 + 80.0 * u(random);
+    rock.position = Vec3(x, y, slope.elevation(x, y) + 2.87);
+    rock.velocity = Vec3(1.0, u(random) - 0.5, 0.0);
+    rock.orientation =
+      Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
+  }
+  Mean x[2], impacts[2], speed[2], rolling[2];
+  double steps[2] = { 0.0, 0.0 };
+  for (const ImpactResolution by : { ImpactResolution::Impulse, ImpactResolution::Springs })
+  {
+    SimulationParameters p;
+    p.endTime = 8.0;
+    p.impactResolution = by;
+    p.normalPenalty = penalty;
+    TrajectoryStore store(rocks.size(), 1);
+    runEnsemble(slope, rocks, p, store);
+    for (const Trajectory& t : store.trajectories())
+    {
+      const auto k = std::size_t(by);
+      x[k].add(t.summary.stop.x());
+      impacts[k].add(t.summary.impacts);
+      speed[k].add(t.summary.maxSpeed);
+      rolling[k].add(t.summary.energy.rolling / t.summary.energy.released);
+      steps[k] += double(t.summary.contactSteps);
+      EXPECT_LT(std::abs(t.summary.energy.numerical), 2e-3 * t.summary.energy.released);
+    }
+  }
+  expectSame(x[0], x[1], 0.01, "x", shape, e);
+  expectSame(impacts[0], impacts[1], 0.03, "impacts", shape, e);
+  expectSame(speed[0], speed[1], 0.01, "speed", shape, e);
+  expectSame(rolling[0], rolling[1], 0.03, "rolling", shape, e);
+  EXPECT_EQ(rolling[0].mean() > 0.0, rollingResistance > 0.0);
+  EXPECT_LT(steps[0], 0.5 * steps[1]) << shapeName(shape) << ", e " << e;
+}
+
+} // namespace
+
 TEST(ImpulseImpacts, AreThoseOfSpringsInTheMean)
 {
   const Shape shapes[] = { Shape::Cube, Shape::Icosahedron, Shape::Eota111 };
@@ -114,45 +168,17 @@ TEST(ImpulseImpacts, AreThoseOfSpringsInTheMean)
   {
     for (const double e : { 0.8, 0.4 })
     {
-      const Terrain slope = roughSlope(e);
-      std::vector<Rock> rocks(160);
-      std::mt19937_64 random(1);
-      std::uniform_real_distribution<double> u(0.0, 1.0);
-      std::normal_distribution<double> normal(0.0, 1.0);
-      for (std::size_t k = 0; k < rocks.size(); ++k)
-      {
-        Rock& rock = rocks[k];
-        rock.blockId = std::int64_t(k);
-        rock.shape = makeShape(shape, 1.0);
-        const double x = 5.0 + 2.0 * u(random), y = 40.0 + 80.0 * u(random);
-        rock.position = Vec3(x, y, slope.elevation(x, y) + 2.87);
-        rock.velocity = Vec3(1.0, u(random) - 0.5, 0.0);
-        rock.orientation =
-          Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
-      }
-      Mean x[2], impacts[2], speed[2];
-      double steps[2] = { 0.0, 0.0 };
-      for (const ImpactResolution by : { ImpactResolution::Impulse, ImpactResolution::Springs })
-      {
-        SimulationParameters p;
-        p.endTime = 8.0;
-        p.impactResolution = by;
-        TrajectoryStore store(rocks.size(), 1);
-        runEnsemble(slope, rocks, p, store);
-        for (const Trajectory& t : store.trajectories())
-        {
-          const auto k = std::size_t(by);
-          x[k].add(t.summary.stop.x());
-          impacts[k].add(t.summary.impacts);
-          speed[k].add(t.summary.maxSpeed);
-          steps[k] += double(t.summary.contactSteps);
-          EXPECT_LT(std::abs(t.summary.energy.numerical), 2e-3 * t.summary.energy.released);
-        }
-      }
-      expectSame(x[0], x[1], 0.01, "x", shape, e);
-      expectSame(impacts[0], impacts[1], 0.03, "impacts", shape, e);
-      expectSame(speed[0], speed[1], 0.01, "speed", shape, e);
-      EXPECT_LT(steps[0], 0.5 * steps[1]) << shapeName(shape) << ", e " << e;
+      expectThoseOfSprings(shape, e, 0.0, 1e9);
     }
+  }
+}
+
+/// Springs that are stiff, as an impact is an event.
+TEST(ImpulseImpacts, AreThoseOfSpringsWithRollingResistance)
+{
+  const Shape shapes[] = { Shape::Eota111, Shape::Icosahedron };
+  for (const Shape shape : std::span(shapes).first(std::size_t(someOf(2, 1))))
+  {
+    expectThoseOfSprings(shape, 0.4, 0.1, 1e12);
   }
 }
