@@ -112,7 +112,7 @@ void widenPanels(QMainWindow* window)
   }
   else if (!panel->isFloating())
   {
-    // Of no effect where the window's docks have not been laid out: a later look sees whether it was.
+    // resizeDocks has no effect before the window has laid out its docks: a later look sees whether it had.
     window->resizeDocks({ panel }, { wide }, Qt::Horizontal);
   }
 }

@@ -118,6 +118,14 @@ inline Terrain randomGround(SceneDraw& draw, double cell, int nodes)
   return Terrain(g, std::move(heights), m);
 }
 
+/// Makes springs as stiff as the weight of a rock asks: the Core refuses what would lie deep in the ground
+/// under its own.
+inline void carry(const Rock& rock, SimulationParameters& p)
+{
+  p.normalPenalty = std::max(p.normalPenalty,
+    60.0 * rock.density * rock.shape.integrals().volume * 9.81 / rock.shape.radius());
+}
+
 /// One to `most` rocks; several hit each other.
 inline RandomScene randomScene(std::uint64_t seed, int most, double seconds)
 {
@@ -159,9 +167,7 @@ inline RandomScene randomScene(std::uint64_t seed, int most, double seconds)
     const double y = 0.5 * length + draw.even(-spread, spread);
     rock.position = { x, y,
       scene.terrain.maxHeight(x - r, x + r, y - r, y + r) + 1.01 * r + 2.0 * size * draw.unit() };
-    // The Core refuses what would lie deep in the ground under its own weight.
-    p.normalPenalty =
-      std::max(p.normalPenalty, 60.0 * rock.density * rock.shape.integrals().volume * 9.81 / r);
+    carry(rock, p);
     scene.rocks.push_back(std::move(rock));
   }
   return scene;
@@ -184,8 +190,7 @@ inline RandomScene roundScene(std::uint64_t seed, double seconds)
     lengths.z() *= draw.even(0.25, 1.0);
   }
   rock.shape = makeEllipsoid(lengths);
-  p.normalPenalty =
-    std::max(p.normalPenalty, 60.0 * rock.density * rock.shape.integrals().volume * p.gravity / r);
+  carry(rock, p);
   return scene;
 }
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 namespace rockfall
 {
@@ -99,7 +100,7 @@ public:
       nearestTo(this->seen(triangle, 0), this->seen(triangle, 1), this->seen(triangle, 2)));
   }
 
-  /// On the same face, on the line of the same edge, or at the same node.
+  /// The touch on the same face, on the line of the same edge, or at the same node.
   Touch touchOn(const Touch& other) const
   {
     Nearest at = other.at;
@@ -135,7 +136,7 @@ public:
   }
 
 private:
-  /// Of its centre.
+  /// Whether the centre is straight under a triangle of the slope.
   bool isUnderSlope() const
   {
     if (!under_)
@@ -183,7 +184,7 @@ private:
   const SurfacePatch& patch_;
   Vec3 centre_;
   Mat3 axes_, inverse_;
-  mutable std::optional<bool> under_; ///< Once it has been asked for.
+  mutable std::optional<bool> under_; ///< isUnderSlope, once it has been asked for.
 };
 
 /// visit(touch) of those within a reach (m) that no triangle which shares the place has nearer.
@@ -284,12 +285,16 @@ void pairByNormal(
   }
 }
 
-/// Where two places become one, the spring that goes on holds the energy of both.
+/// One spring with the energy of both, where two places have become one.
 void mergeLeft(
   const std::vector<Touch>& touches, const std::vector<int>& taken, std::vector<Contact>& carry)
 {
   for (std::size_t k = 0; k < carry.size(); ++k)
   {
+    if (std::find(taken.begin(), taken.end(), int(k)) != taken.end())
+    {
+      continue;
+    }
     const Contact& left = carry[k];
     double nearest = kSmoothTurn;
     int next = -1;
@@ -302,12 +307,18 @@ void mergeLeft(
         next = taken[i];
       }
     }
-    if (next < 0 || std::find(taken.begin(), taken.end(), int(k)) != taken.end())
+    if (next >= 0)
     {
-      continue;
+      joinSprings(carry[std::size_t(next)], left);
     }
-    joinSprings(carry[std::size_t(next)], left);
   }
+}
+
+void turnTo(Contact& contact, const Vec3& normal, const Vec3& point)
+{
+  contact.normal = normal;
+  contact.point = point;
+  contact.slip -= normal.dot(contact.slip) * normal;
 }
 
 } // namespace
@@ -365,10 +376,8 @@ void updateRound(const PlacedBlock& rock, const SurfacePatch& patch,
     c.patchFeature = touch.triangle;
     c.surfaceFeature = t.key;
     c.cfe = t.cfe;
-    c.normal = touch.normal;
-    c.point = touch.point;
+    turnTo(c, touch.normal, touch.point);
     c.distance = touch.distance;
-    c.slip -= touch.normal.dot(c.slip) * touch.normal;
     // The step has conserved energy with the gap that it predicted. On an edge or a node the body
     // turns away from the plane of the step; a spring that gave way there would lose what it holds.
     c.offset = goesOn ? c.distance - gap : std::min(0.0, c.distance);
@@ -378,19 +387,22 @@ void updateRound(const PlacedBlock& rock, const SurfacePatch& patch,
 void turnToMiddle(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double h, std::vector<Contact>& contacts)
 {
+  if (contacts.empty())
+  {
+    return;
+  }
   const Vec3 spin = state.angularVelocity();
   const double turn = 0.5 * h * spin.norm();
+  const Mat3 axes = roundAxes(rock);
   const Mat3 turned = turn > 0.0
     ? Mat3(Eigen::AngleAxisd(turn, spin.normalized()).toRotationMatrix())
     : Mat3(Mat3::Identity());
   const Vec3 centre = rock.position() + 0.5 * h * state.velocity;
-  const Round now(rock, patch), middle(patch, centre, turned * roundAxes(rock));
+  const Round now(patch, rock.position(), axes), middle(patch, centre, turned * axes);
   for (Contact& c : contacts)
   {
     const Touch touch = middle.touchOn(now.touch(c.patchFeature));
-    c.normal = touch.normal;
-    c.point = rock.position() + (touch.point - centre);
-    c.slip -= touch.normal.dot(c.slip) * touch.normal;
+    turnTo(c, touch.normal, rock.position() + (touch.point - centre));
   }
 }
 

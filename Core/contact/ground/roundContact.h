@@ -17,8 +17,6 @@
 #include "contact/ground/clearance.h"
 #include "geometry/roundBody.h"
 
-#include <optional>
-
 namespace rockfall
 {
 

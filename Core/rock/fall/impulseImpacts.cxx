@@ -59,20 +59,16 @@ void resistRollingAt(
     const ImpulsePoint& point = points[i];
     const Vec3 speed = body.state.velocity + spin.cross(point.lever);
     const Vec3 slip = speed - point.normal.dot(speed) * point.normal;
-    support.force += point.impulse;
-    support.sliding += slip.norm() > kQuietImpulse * body.restingSpeed ? point.impulse : 0.0;
-    support.point += point.impulse * touches[i].point;
+    support.add(point.impulse, slip.norm() > kQuietImpulse * body.restingSpeed, touches[i].point);
     if (point.impulse > most)
     {
       most = point.impulse;
-      coefficient = fall.surface.terrain()
-                      .restitutionMaterial(fall.surface.restitutionClass(touches[i].cfe))
-                      .yielding.rollingResistance;
+      coefficient =
+        fall.soil.groundOf(fall.surface.restitutionClass(touches[i].cfe)).rollingResistance;
     }
   }
   if (coefficient > 0.0)
   {
-    support.point /= support.force;
     body.energy.rolling += resistRolling(body.block, support, coefficient, 1.0, body.state);
   }
 }

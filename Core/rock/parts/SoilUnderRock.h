@@ -25,6 +25,7 @@ public:
 
   bool yields() const { return yields_; } ///< Some class of the ground does.
   const Scar& scar() const { return scar_; }
+  const YieldingGround& groundOf(int restitutionClass) const;
   /// tan φ at a contact as the slip so far has left it; NaN: it does not hang on slip.
   double slipFriction(
     const Contact& contact, const RockBody& body, const StructuresOnWay& structures) const;
@@ -58,7 +59,6 @@ public:
   void forgetSlip(double duration); ///< Time (s) without touch.
 
 private:
-  const YieldingGround& groundOf(int restitutionClass) const;
   /// At a contact; hard on trees.
   const YieldingGround& groundAt(const Contact& contact, const StructuresOnWay& structures) const;
   /// S of the ground under the rock, of the class at a contact.

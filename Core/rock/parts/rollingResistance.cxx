@@ -17,6 +17,13 @@ double energyOf(const Block& block, const Vec3& velocity, const Vec3& spin)
 
 } // namespace
 
+void Support::add(double part, bool slides, const Vec3& at)
+{
+  this->force += part;
+  this->sliding += slides ? part : 0.0;
+  this->moment += part * at;
+}
+
 Support supportOf(const std::vector<Contact>& contacts)
 {
   Support support;
@@ -24,14 +31,8 @@ Support supportOf(const std::vector<Contact>& contacts)
   {
     if (c.normalForce > 0.0)
     {
-      support.force += c.normalForce;
-      support.sliding += c.state == ContactState::Sliding ? c.normalForce : 0.0;
-      support.point += c.normalForce * c.point;
+      support.add(c.normalForce, c.state == ContactState::Sliding, c.point);
     }
-  }
-  if (support.force > 0.0)
-  {
-    support.point /= support.force;
   }
   return support;
 }
@@ -52,7 +53,7 @@ double resistRolling(
   const double impulse = coefficient * rollingArm(block) * support.force * h; // N m s
   const double before = energyOf(block, state.velocity, state.spin);
   const Vec3 turning = block.inertia() * state.spin; // body axes
-  const Vec3 lever = state.orientation.conjugate() * (state.position - support.point);
+  const Vec3 lever = state.orientation.conjugate() * (state.position - support.point());
   if (support.sliding < 0.5 * support.force)
   {
     // About the support: Θ ω = I ω + m r × (ω × r).

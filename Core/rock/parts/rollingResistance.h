@@ -18,16 +18,19 @@ namespace rockfall
 /// its own.
 double rollingArm(const Block& block);
 
-/// Where the slope carries a rock: the contacts' mean, weighted by their forces. Of an impact that is an
-/// event, by their impulses.
+/// Place where the slope carries a rock, and how: of a step by forces, of an impact that is an event by
+/// impulses.
 struct Support
 {
-  double force = 0.0;        ///< Normal, N.
-  double sliding = 0.0;      ///< The part of it that slides, N.
-  Vec3 point = Vec3::Zero(); ///< m
+  double force = 0.0;         ///< Normal, N (N s).
+  double sliding = 0.0;       ///< The part of it that slides, N (N s).
+  Vec3 moment = Vec3::Zero(); ///< Sum of places by their forces, N m (N m s).
+
+  void add(double part, bool slides, const Vec3& at);
+  Vec3 point() const { return this->moment / this->force; } ///< m
 };
 
-/// Of the mean forces of a step.
+/// Support by the mean forces of a step.
 Support supportOf(const std::vector<Contact>& contacts);
 
 /// Takes the moment's impulse of a step of `h` (s) from the motion and returns the energy that it

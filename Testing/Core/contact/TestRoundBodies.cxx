@@ -38,6 +38,18 @@ SurfaceMaterial rolling(double restitution, double friction, double resistance)
   return m;
 }
 
+std::vector<Contact> contactsOf(
+  const Block& block, const BlockState& state, const SurfacePatch& patch, double reach)
+{
+  PlacedBlock rock;
+  rock.place(block, state);
+  CandidatePairs candidates;
+  gatherCandidates(rock, state, patch, reach, candidates);
+  std::vector<Contact> contacts;
+  updateContacts(rock, patch, candidates, reach, contacts);
+  return contacts;
+}
+
 } // namespace
 
 TEST(RoundBodies, HaveTheMassOfTheBodyAndNotOfItsMesh)
@@ -219,17 +231,11 @@ TEST(RoundBodies, AreNotTouchedByTheFarFlankOfARidge)
   const Block block(makeShape(Shape::Sphere, 0.004), 2500.0, 1e10, 0.1);
   SurfacePatch patch;
   gatherPatch(Surface::asSurveyed(ground), 0.0, 10.0, 0.0, 10.0, patch);
+  BlockState state;
   const auto contactsAt = [&](const Vec3& place)
   {
-    BlockState state;
     state.position = place;
-    PlacedBlock rock;
-    rock.place(block, state);
-    CandidatePairs candidates;
-    gatherCandidates(rock, state, patch, 0.05, candidates);
-    std::vector<Contact> contacts;
-    updateContacts(rock, patch, candidates, 0.05, contacts);
-    return contacts;
+    return contactsOf(block, state, patch, 0.05);
   };
   for (const double height : { 0.2, 0.5, 1.0 })
   {
@@ -259,16 +265,6 @@ TEST(RoundBodies, GapsAreToldToTheSecondOrderOfAStep)
   const Block block(makeEllipsoid(Vec3(1.6, 1.2, 1.0)), 2500.0, 1e10, 0.1);
   SurfacePatch patch;
   gatherPatch(Surface::asSurveyed(ground), 0.0, 16.0, 0.0, 16.0, patch);
-  const auto contactsAt = [&](const BlockState& state)
-  {
-    PlacedBlock rock;
-    rock.place(block, state);
-    CandidatePairs candidates;
-    gatherCandidates(rock, state, patch, 6.0, candidates);
-    std::vector<Contact> contacts;
-    updateContacts(rock, patch, candidates, 6.0, contacts);
-    return contacts;
-  };
   const auto any = [&](double scale) // drawn in this order by every compiler
   {
     const double x = u(random), y = u(random), z = u(random);
@@ -289,12 +285,12 @@ TEST(RoundBodies, GapsAreToldToTheSecondOrderOfAStep)
     Contact at;
     for (int k = 0; k < 30; ++k) // down until it touches
     {
-      const std::vector<Contact> over = contactsAt(state);
+      const std::vector<Contact> over = contactsOf(block, state, patch, 6.0);
       at = *std::min_element(over.begin(), over.end(),
         [](const Contact& x, const Contact& y) { return x.distance < y.distance; });
       state.position.z() -= at.distance;
     }
-    // It goes along the ground: far from it, distances of an ellipsoid are not exact.
+    // Along the ground, as far from it distances of an ellipsoid are not exact.
     const Vec3 closing = state.velocity + turn.cross(at.point - state.position);
     state.velocity -= at.normal.dot(closing) * at.normal;
     const auto miss = [&](double step, bool middle)
@@ -313,7 +309,7 @@ TEST(RoundBodies, GapsAreToldToTheSecondOrderOfAStep)
       const Vec3 speed = state.velocity + turn.cross(told[0].point - state.position);
       const double gap = at.distance + step * told[0].normal.dot(speed);
       double least = 1.0;
-      for (const Contact& c : contactsAt(end))
+      for (const Contact& c : contactsOf(block, end, patch, 6.0))
       {
         least = c.surfaceFeature == at.surfaceFeature ? std::abs(c.distance - gap) : least;
       }

@@ -11,6 +11,20 @@
 using namespace rockfall;
 using namespace rockfall::testing;
 
+namespace
+{
+
+void expectSound(const SceneOutcome& outcome)
+{
+  ASSERT_FALSE(outcome.refused || outcome.givenUp);
+  EXPECT_TRUE(outcome.sameBits);
+  EXPECT_LE(std::abs(outcome.made), 0.01 * outcome.released);
+  EXPECT_LE(outcome.gained, 0.01 * outcome.released);
+  EXPECT_EQ(outcome.tooDeep, 0.0) << outcome.worst;
+}
+
+} // namespace
+
 class RandomScenes : public ::testing::TestWithParam<int>
 {
 };
@@ -18,12 +32,7 @@ class RandomScenes : public ::testing::TestWithParam<int>
 TEST_P(RandomScenes, MakeNoEnergyAndStayOutOfTheGround)
 {
   const double seconds = isSmallForm() ? 0.5 : 1.0;
-  const SceneOutcome outcome = runScene(randomScene(std::uint64_t(GetParam()), 12, seconds), 240.0);
-  ASSERT_FALSE(outcome.refused || outcome.givenUp);
-  EXPECT_TRUE(outcome.sameBits);
-  EXPECT_LE(std::abs(outcome.made), 0.01 * outcome.released);
-  EXPECT_LE(outcome.gained, 0.01 * outcome.released);
-  EXPECT_EQ(outcome.tooDeep, 0.0) << outcome.worst;
+  expectSound(runScene(randomScene(std::uint64_t(GetParam()), 12, seconds), 240.0));
 }
 
 // Rocks alone, and falls of up to twelve; in 131 some are thrown into pits and wedged, in
@@ -35,12 +44,8 @@ TEST(RandomScene, RoundRocksKeepTheirBooks)
 {
   for (std::uint64_t seed = 910000; seed < 910040; ++seed)
   {
-    const SceneOutcome outcome = runScene(roundScene(seed, 2.0), 240.0);
-    ASSERT_FALSE(outcome.refused || outcome.givenUp) << seed;
-    EXPECT_TRUE(outcome.sameBits) << seed;
-    EXPECT_LE(std::abs(outcome.made), 0.01 * outcome.released) << seed;
-    EXPECT_LE(outcome.gained, 0.01 * outcome.released) << seed;
-    EXPECT_EQ(outcome.tooDeep, 0.0) << seed << ' ' << outcome.worst;
+    SCOPED_TRACE(seed);
+    expectSound(runScene(roundScene(seed, 2.0), 240.0));
   }
 }
 
