@@ -158,23 +158,33 @@ void Recorder::addKnot(const BlockState& state, bool contact)
 
 void Recorder::beforeJump(const RockBody& body, bool contact)
 {
-  jump_ = this->knotAt(body.state.time);
-  BlockState before = body.state;
-  before.time -= kInstant;
-  if (!this->isAt(before.time))
+  this->addBeforeJump(body.state, contact);
+  this->audit(body, body.state);
+}
+
+void Recorder::addBeforeJump(BlockState state, bool contact)
+{
+  jump_ = this->knotAt(state.time);
+  state.time -= kInstant;
+  const bool begins = trajectory_.samples.empty(); // no path before it
+  if (!begins && !this->isAt(state.time))
   {
-    this->add(this->makeSample(before, contact));
+    this->add(this->makeSample(state, contact));
     trajectory_.samples.back().kind = SampleKind::Knot;
   }
-  this->audit(body, body.state);
 }
 
 void Recorder::afterJump(const RockBody& body, bool contact)
 {
-  knot_ = body.state;
-  this->add(this->makeSample(body.state, contact));
-  trajectory_.samples.back().kind = jump_;
+  this->addAfterJump(body.state, contact);
   this->audit(body, body.state);
+}
+
+void Recorder::addAfterJump(const BlockState& state, bool contact)
+{
+  knot_ = state;
+  this->add(this->makeSample(state, contact));
+  trajectory_.samples.back().kind = jump_;
 }
 
 bool Recorder::isAt(double time) const
@@ -237,6 +247,39 @@ void Recorder::recordBetween(
   {
     this->addKnot(from, contact);
   }
+  if (even || this->follows(to) || !(to.time > from.time))
+  {
+    this->addEvens(from, to, contact);
+  }
+  else
+  {
+    this->addStraight(from, to, contact);
+  }
+  this->audit(body, to);
+}
+
+void Recorder::addStraight(const BlockState& from, const BlockState& to, bool contact)
+{
+  const double h = to.time - from.time, allowed = kPathTolerance * block_.radius();
+  BlockState first = from, last = to;
+  first.velocity = last.velocity = (to.position - from.position) / h;
+  const auto jumps = [&](const BlockState& end)
+  { return (end.velocity - first.velocity).norm() * h > allowed; };
+  if (jumps(from))
+  {
+    this->addBeforeJump(from, contact);
+    this->addAfterJump(first, contact);
+  }
+  this->addEvens(first, last, contact);
+  if (jumps(to))
+  {
+    this->addBeforeJump(last, contact);
+    this->addAfterJump(to, contact);
+  }
+}
+
+void Recorder::addEvens(const BlockState& from, const BlockState& to, bool contact)
+{
   const double h = to.time - from.time;
   while (this->nextTime() <= to.time && h > 0.0)
   {
@@ -244,11 +287,6 @@ void Recorder::recordBetween(
     at.time = this->nextTime();
     this->addEven(at, contact);
   }
-  if (!even && !this->follows(to))
-  {
-    this->addKnot(to, contact);
-  }
-  this->audit(body, to);
 }
 
 void Recorder::follow(const BlockState& state)
