@@ -43,7 +43,7 @@ struct SimulationParameters
   double gravity = 9.81;        ///< m/s², ≥ 0.
   ImpactResolution impactResolution = ImpactResolution::Springs;
 
-  double normalPenalty = 1e9;   ///< pₙ, N/m; 0: by mass (Ensemble). METHOD 9.1: 1e9.
+  double normalPenalty = 0.0;   ///< pₙ, N/m; 0: `penaltyFor`. METHOD 9.1: 1e9.
   double shearRatio = 1.0;      ///< pₛ / pₙ, dimensionless, > 0.
   bool rockRockContact = false; ///< Rocks of one iteration fall together and hit each other.
   double rockRestitution = 0.5; ///< Normal, between rocks, dimensionless, 0 … 1.
@@ -66,6 +66,11 @@ struct SimulationParameters
 
   int maxOpenClose = 12; ///< Open–close iterations before a step is cut, ≥ 2.
   int maxCuts = 10;      ///< Halvings of a step before it is taken unsettled, ≥ 0.
+
+  /// pₙ of a rock (kg) on the slope, N/m: `normalPenalty`; of 0 m (10⁴ rad/s)² and no less than the
+  /// paper's, which rocks have that fall together.
+  double penaltyFor(double mass) const;
+  double pairPenalty() const; ///< pₙ between rocks, N/m: `normalPenalty`, or of 0 the paper's.
 
   void validate() const; ///< Throws ParameterError naming field and value.
 };

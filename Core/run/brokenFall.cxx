@@ -29,27 +29,19 @@ std::uint32_t numberOf(std::uint32_t parent, std::size_t piece)
   return std::uint32_t(scramble(std::uint64_t(parent) << 32 | piece));
 }
 
-SimulationParameters withPenalty(SimulationParameters p, const Block& block, const Terrain& terrain)
-{
-  p.normalPenalty = p.normalPenalty == 0.0 ? penaltyByMass(block.mass(), terrain) : p.normalPenalty;
-  return p;
-}
-
 /// A rock or a piece on its way.
 struct Part
 {
   Part(const Surface& surface, const Rock& given, const SimulationParameters& p, std::uint32_t n)
     : rock(given)
     , block(blockOf(rock))
-    , parameters(withPenalty(p, block, surface.terrain()))
     , number(n)
-    , fall(surface, rock, block, parameters, n)
+    , fall(surface, rock, block, p, n)
   {
   }
 
   Rock rock;
   Block block;
-  SimulationParameters parameters;
   std::uint32_t number;
   SingleRock fall;
   double born = 0.0;               ///< s

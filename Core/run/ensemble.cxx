@@ -125,21 +125,6 @@ void onThreads(int threads, const Work& work)
 
 } // namespace
 
-double penaltyByMass(double mass, const Terrain& terrain)
-{
-  constexpr double least = 1e9; // N/m
-  // ω, rad/s. Lower: on hard ground large blocks sink into their springs; out of scars rocks jump
-  // lower, on a meadow with 600 by 12 to 40 % (0.1 to 100 m³), with 1e4 by 2 % at most. Higher:
-  // shorter steps of impacts.
-  constexpr double onHard = 600.0, inScars = 1e4;
-  double frequency = onHard;
-  for (int k = 0; k <= terrain.restitutionClasses().count(); ++k)
-  {
-    frequency = terrain.restitutionMaterial(k).yielding.scars() ? inScars : frequency;
-  }
-  return std::max(least, frequency * frequency * mass);
-}
-
 Ensemble::Ensemble(
   const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& p)
   : terrain_(terrain)
@@ -281,12 +266,6 @@ std::vector<Trajectory> Ensemble::simulate(
   for (const Rock& rock : rocks)
   {
     blocks.push_back(blockOf(rock));
-  }
-  if (own.normalPenalty == 0.0)
-  {
-    // Rocks that fall together have one stiffness, whatever lies on what.
-    own.normalPenalty =
-      penaltyByMass(parameters_.rockRockContact ? 0.0 : blocks[0].mass(), terrain_);
   }
   std::vector<Trajectory> trajectories =
     World(surface, rocks, blocks, own, first).run(goOn, enough);

@@ -90,10 +90,6 @@ private:
   mutable PushedApart pushed_; ///< Most and sums: the order does not count.
 };
 
-/// pₙ of a rock (kg) where none is typed, N/m: ω² m, and no less than the paper's, which is accurate
-/// enough on hard ground (METHOD 9.1).
-double penaltyByMass(double mass, const Terrain& terrain);
-
 /// Simulates every rock in every iteration: `Ensemble::run` of the whole.
 bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
   const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress = {});

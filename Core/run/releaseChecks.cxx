@@ -67,13 +67,14 @@ void requireStiff(const Rock& rock, const Block& block, const SimulationParamete
 {
   const double weight = block.mass() * p.gravity;
   const double most = kDeepestAtRest * block.radius();
-  if (p.normalPenalty > 0.0 && weight > most * p.normalPenalty)
+  const double penalty = p.penaltyFor(block.mass());
+  if (weight > most * penalty)
   {
-    throw ParameterError("NormalPenalty is " + numberText(p.normalPenalty) +
-      " N/m, too soft for block " + std::to_string(rock.blockId) + ": at rest its " +
-      numberText(block.mass()) + " kg would lie " + numberText(weight / p.normalPenalty) +
-      " m deep in the ground, more than " + numberText(100.0 * kDeepestAtRest) +
-      " % of its radius; it needs " + numberText(weight / most) + " N/m or more");
+    throw ParameterError("NormalPenalty is " + numberText(penalty) + " N/m, too soft for block " +
+      std::to_string(rock.blockId) + ": at rest its " + numberText(block.mass()) +
+      " kg would lie " + numberText(weight / penalty) + " m deep in the ground, more than " +
+      numberText(100.0 * kDeepestAtRest) + " % of its radius; it needs " +
+      numberText(weight / most) + " N/m or more");
   }
 }
 

@@ -113,7 +113,7 @@ constexpr GroundPreset presets[] = {
     smooth, assumed, brakesTwice },
   { "bedrock with boulders", "Bedrock with boulders", 0.35, 1.0, 0.020, 35.0, 2.5, holds(0.3),
     Memory, hoek, assumed, "assumed: rocks rest on 17°", stones(2.0, 0.05, 0.2, 0.4), assumed,
-    "is quoted from memory: on 450 m of 35° rocks reach 51 m/s, in field surveys 30 m/s at most" },
+    "is quoted from memory: on 450 m of 35° rocks reach 47 m/s, in field surveys 30 m/s at most" },
   { "talus", "Talus", 0.6, 1.0, 0.3, 37.0, 2.0, sized(yields(10e6, 1.25, 0.6, 0.08)), Assumption,
     assumed, lu, longSlopes, stones(2.0, 0.05, 0.1, 0.2), assumed, shortOfSteep, 4.0 },
   { "talus with vegetation", "Talus with vegetation", 0.6, 1.0, 0.3, 37.0, 2.0,

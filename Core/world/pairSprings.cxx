@@ -12,7 +12,7 @@ namespace rockfall
 
 PairStiffness pairStiffness(const SimulationParameters& parameters)
 {
-  return { parameters.normalPenalty, parameters.shearRatio, parameters.rigid };
+  return { parameters.pairPenalty(), parameters.shearRatio, parameters.rigid };
 }
 
 namespace

@@ -108,6 +108,7 @@ int main(int argc, char** argv)
   const Terrain slope = roughSlope();
   const std::vector<Rock> rocks = rocksOn(slope);
   SimulationParameters p;
+  p.normalPenalty = 1e9; // the paper's
   p.iterations = std::max(1, wanted / kRocks);
   p.endTime = 20.0;
   std::printf(

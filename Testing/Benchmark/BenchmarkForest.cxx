@@ -130,6 +130,7 @@ public:
 int main(int argc, char** argv)
 {
   SimulationParameters p;
+  p.normalPenalty = 1e9; // the paper's
   p.iterations = argc > 1 ? std::max(1, std::atoi(argv[1])) : 4;
   p.endTime = 40.0;
   p.threads = 1;

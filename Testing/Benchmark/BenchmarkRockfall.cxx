@@ -50,6 +50,7 @@ void singleRocks(benchmark::State& state, Shape shape, double timeStep, const Te
 {
   const std::vector<Rock> rocks = benchRocks(shape, slope);
   SimulationParameters p;
+  p.normalPenalty = 1e9; // the paper's
   p.timeStep = timeStep;
   p.endTime = kDuration;
   p.outputInterval = kDuration;

@@ -78,7 +78,7 @@ double BlockSlopeSimulator::longStep() const
 
 double BlockSlopeSimulator::impactStep() const
 {
-  const double frequency = std::sqrt(parameters_.normalPenalty * block_.largestMobility());
+  const double frequency = std::sqrt(parameters_.pairPenalty() * block_.largestMobility());
   return std::min(this->longStep(), std::numbers::pi / (kBlockStepsPerImpact * frequency));
 }
 
@@ -99,7 +99,7 @@ void BlockSlopeSimulator::findContacts(double reach)
 bool BlockSlopeSimulator::isCalm() const
 {
   const double settled = body_.restingSpeed +
-    4.0 * parameters_.gravity * std::sqrt(block_.mass() / parameters_.normalPenalty);
+    4.0 * parameters_.gravity * std::sqrt(block_.mass() / parameters_.pairPenalty());
   const Vec3 spin = body_.state.angularVelocity();
   return body_.normalEnergy <= 0.5 * block_.mass() * settled * settled &&
     std::all_of(body_.contacts.begin(), body_.contacts.end(),
@@ -136,8 +136,8 @@ void BlockSlopeSimulator::takeStep(double h, bool lasting)
   request.duration = h;
   request.lasting = lasting;
   request.gravity = parameters_.gravity;
-  request.normalPenalty = parameters_.normalPenalty;
-  request.shearPenalty = parameters_.normalPenalty * parameters_.shearRatio;
+  request.normalPenalty = parameters_.pairPenalty();
+  request.shearPenalty = parameters_.pairPenalty() * parameters_.shearRatio;
   request.friction = surface_.friction();
   request.cohesion = surface_.cohesion();
   request.maxOpenClose = parameters_.maxOpenClose;

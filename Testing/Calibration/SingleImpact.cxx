@@ -1,5 +1,4 @@
 #include "SingleImpact.h"
-#include "run/ensemble.h"
 
 #include "rock/fall/SingleRock.h"
 
@@ -77,12 +76,7 @@ ImpactOutcome simulateImpact(
 {
   const Surface surface(terrain, p.seed, iteration);
   const Block block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
-  SimulationParameters own = p;
-  if (own.normalPenalty == 0.0)
-  {
-    own.normalPenalty = penaltyByMass(block.mass(), terrain);
-  }
-  const Trajectory t = SingleRock(surface, rock, block, own).run();
+  const Trajectory t = SingleRock(surface, rock, block, p).run();
   const std::vector<Sample>& samples = t.samples;
   ImpactOutcome result;
   std::size_t touch = 0;

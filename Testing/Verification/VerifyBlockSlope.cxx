@@ -27,6 +27,7 @@ TEST(BlockSlope, GivesTheVelocityHistoryOfCfes)
     for (double timeStep : { 0.01, 0.005 })
     {
       SimulationParameters p;
+      p.normalPenalty = 1e9; // the paper's
       p.timeStep = timeStep;
       p.outputInterval = 0.01;
       p.endTime = 3.0;
@@ -75,6 +76,7 @@ TEST(BlockSlope, CostsMoreTheLargerTheSlope)
   {
     Rock rock = rockfall::testing::cubeOnPlane(60.0, radians(30.0), 0.0, 10.0);
     SimulationParameters p;
+    p.normalPenalty = 1e9;
     p.timeStep = 0.01;
     p.endTime = 0.5;
     const Terrain plane =

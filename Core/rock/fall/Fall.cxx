@@ -23,7 +23,7 @@ RockBody bodyOf(const Rock& rock, const Block& block, const SimulationParameters
   body.state.spin = body.state.orientation.conjugate() * rock.angularVelocity;
   body.restingSpeed =
     kRestingSpeed * std::sqrt(std::max(p.gravity, kLeastGravity) * block.radius());
-  const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
+  const double contacts = std::sqrt(p.penaltyFor(block.mass()) * block.largestMobility());
   body.stiff =
     p.rigid || block.strainFrequency() >= std::min(kStiffBesideContacts * contacts, kFastVibration);
   body.ringing = body.stiff ? 0.0 : 2.0 * std::numbers::pi / block.strainFrequency();

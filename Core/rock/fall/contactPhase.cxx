@@ -415,7 +415,7 @@ void commitStep(Fall& fall, StepKind kind, const StepOutcome& outcome, double en
     keepAcceleration(fall);
     if (recovers)
     {
-      recoverLooseOverlaps(body, taken, fall.parameters.gravity, fall.parameters.normalPenalty);
+      recoverLooseOverlaps(body, taken, fall.parameters.gravity, fall.springs.leastPenalty());
     }
   }
   else

@@ -84,7 +84,7 @@ void stepAsIsland(Fall& fall, double h)
   const double energyBefore = body.mechanicalEnergy(fall.parameters.gravity) + body.springEnergy;
   thread_local Work work;
   work.solver.setStiffness(
-    { fall.parameters.normalPenalty, fall.parameters.shearRatio, fall.parameters.rigid });
+    { fall.springs.leastPenalty(), fall.parameters.shearRatio, fall.parameters.rigid });
   work.bodies.assign(1, {});
   work.bodies[0].block = &body.block;
   work.bodies[0].state = &body.state;

@@ -12,7 +12,8 @@ namespace rockfall
 
 double SlopeImpact::duration(const RockBody& body) const
 {
-  return std::numbers::pi * std::sqrt(body.block.mass() / parameters_.normalPenalty);
+  return std::numbers::pi *
+    std::sqrt(body.block.mass() / parameters_.penaltyFor(body.block.mass()));
 }
 
 bool SlopeImpact::isWorthAnEvent(const RockBody& body) const

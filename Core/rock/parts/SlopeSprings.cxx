@@ -38,8 +38,9 @@ SlopeSprings::SlopeSprings(
   const Surface& surface, const SimulationParameters& parameters, const Block& block)
   : surface_(surface)
   , parameters_(parameters)
-  , penalty_(parameters.normalPenalty)
-  , softness_(1.0 / parameters.normalPenalty + block.largestCompliance())
+  , least_(parameters.penaltyFor(block.mass()))
+  , penalty_(least_)
+  , softness_(1.0 / least_ + block.largestCompliance())
 {
 }
 
@@ -133,8 +134,7 @@ double SlopeSprings::stoppingPenalty(const RockBody& body) const
   // All that moves in one spring.
   const double depth =
     std::min(kDeepestImpact * body.block.radius(), kDeepestOfThin * body.block.thickness());
-  return std::max(
-    parameters_.normalPenalty, 2.0 * rigidKineticEnergy(body.block, body.state) / (depth * depth));
+  return std::max(least_, 2.0 * rigidKineticEnergy(body.block, body.state) / (depth * depth));
 }
 
 void SlopeSprings::stiffen(const RockBody& body)

@@ -18,7 +18,8 @@ class SlopeSprings
 public:
   SlopeSprings(const Surface& surface, const SimulationParameters& parameters, const Block& block);
 
-  double penalty() const { return penalty_; } ///< pₙ of the contacts that are made now, N/m.
+  double leastPenalty() const { return least_; } ///< pₙ of a rock that comes slowly, N/m.
+  double penalty() const { return penalty_; }    ///< Of the contacts that are made now, N/m.
   /// For a touch-down: no stiffer than needed to stop the rock in time.
   void beginContact(const RockBody& body) { penalty_ = this->stoppingPenalty(body); }
   /// A rock that slides into something may be faster than when its contact began.
@@ -45,7 +46,7 @@ private:
 
   const Surface& surface_;
   const SimulationParameters& parameters_;
-  double penalty_;
+  double least_, penalty_;
   double softness_;                        ///< Of a contact and the block behind it, m/N.
   std::vector<double> dampingRatios_;      ///< ζ by restitution class; < 0: not known yet.
   double dampedFor_ = -1.0, damped_ = 0.0; ///< The restitution looked up last, and its ζ.

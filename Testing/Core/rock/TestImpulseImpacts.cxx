@@ -92,7 +92,8 @@ TEST(ImpulseImpacts, TouchesThatSpringsTakeForOneAreOne)
   for (const ImpactResolution by : { ImpactResolution::Impulse, ImpactResolution::Springs })
   {
     SimulationParameters p;
-    p.endTime = 0.9; // 0.7 s down, and up again
+    p.endTime = 0.9;       // 0.7 s down, and up again
+    p.normalPenalty = 1e9; // an impact of 5 ms
     p.impactResolution = by;
     Rock rock;
     rock.shape = makeShape(Shape::Cube, 1.0);

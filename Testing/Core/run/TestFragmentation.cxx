@@ -461,7 +461,7 @@ TEST(Fragmentation, AStemThatAPieceBreaksIsGoneForTheOthers)
   const Rock rock = thrownDown(15.0);
   Fragmentation law = lawOf(50e3, 2e-3);
   law.spread = radians(20.0);
-  const auto all = runOf(terrain, { rock }, law, 4);
+  const auto all = runOf(terrain, { rock }, law, 12);
   std::map<std::pair<int, std::int64_t>, int> broken;
   int count = 0;
   for (const Trajectory& t : all)
