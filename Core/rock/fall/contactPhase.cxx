@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace rockfall
@@ -85,8 +86,9 @@ void endContact(Fall& fall)
 }
 
 /// Without contacts that carry: relaxes, takes off, or flies as long as nothing can close within
-/// steps of `small` (s). Whether anything was done.
-bool flyFromContact(Fall& fall, double small)
+/// steps of `small` (s). `open` (s): for how long nothing does by the contacts that were found, which
+/// know of edges beside each other that they do not meet. Whether anything was done.
+bool flyFromContact(Fall& fall, double small, double open)
 {
   RockBody& body = fall.body;
   if (!body.stiff && !(body.state.strain.isZero(0.0) && body.state.strainRate.isZero(0.0)))
@@ -123,7 +125,7 @@ bool flyFromContact(Fall& fall, double small)
     endContact(fall);
     return true;
   }
-  if (const double sure = std::min(free, served); sure > small)
+  if (const double sure = std::min(std::max(free, open), served); sure > small)
   {
     body.contacts.clear();
     advanceInFlight(fall, sure);
@@ -131,6 +133,22 @@ bool flyFromContact(Fall& fall, double small)
     return true;
   }
   return false;
+}
+
+/// For how long no contact of a rock that flies closes, at the least, s.
+double timeOfOpenContacts(const RockBody& body, double gravity)
+{
+  double first = std::numeric_limits<double>::infinity();
+  const Vec3 spin = body.state.angularVelocity();
+  const double turning =
+    2.0 * spin.squaredNorm() * body.block.radius() + 2.0 * spin.norm() * body.state.velocity.norm();
+  for (const Contact& c : body.contacts)
+  {
+    first = std::min(first,
+      timeToCover(std::max(0.0, c.gap()), approachOf(body.state, spin, c.point, c.normal),
+        gravity + 2.0 * turning));
+  }
+  return first;
 }
 
 /// Gap that may close however the rock goes, as rounding hides it, share of r.
@@ -293,6 +311,9 @@ void stayInContact(Fall& fall)
       kind = StepKind::Impact;
       h = std::min(h, small);
     }
+    const bool flies = kind == StepKind::Impact && !anyClosed(body.contacts);
+    const double open =
+      flies ? std::min(ahead, timeOfOpenContacts(body, fall.parameters.gravity)) : 0.0;
     forgetFarContacts(fall, h);
     // What gives way first changes the ground under the step, which is then looked at anew.
     if ((fall.structures.solid() && breakTrees(fall, h)) ||
@@ -301,8 +322,7 @@ void stayInContact(Fall& fall)
       continue;
     }
     // Hops have a closed form, and need no steps.
-    if (kind == StepKind::Impact && !anyClosed(body.contacts) && fall.openTime >= body.ringing &&
-      flyFromContact(fall, small))
+    if (flies && fall.openTime >= body.ringing && flyFromContact(fall, small, open))
     {
       continue;
     }
