@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace rockfall
@@ -86,9 +85,8 @@ void endContact(Fall& fall)
 }
 
 /// Without contacts that carry: relaxes, takes off, or flies as long as nothing can close within
-/// steps of `small` (s). `open` (s): for how long nothing does by the contacts that were found, which
-/// know of edges beside each other that they do not meet. Whether anything was done.
-bool flyFromContact(Fall& fall, double small, double open)
+/// steps of `small` (s). Whether anything was done.
+bool flyFromContact(Fall& fall, double small)
 {
   RockBody& body = fall.body;
   if (!body.stiff && !(body.state.strain.isZero(0.0) && body.state.strainRate.isZero(0.0)))
@@ -125,7 +123,7 @@ bool flyFromContact(Fall& fall, double small, double open)
     endContact(fall);
     return true;
   }
-  if (const double sure = std::min(std::max(free, open), served); sure > small)
+  if (const double sure = std::min(free, served); sure > small)
   {
     body.contacts.clear();
     advanceInFlight(fall, sure);
@@ -133,22 +131,6 @@ bool flyFromContact(Fall& fall, double small, double open)
     return true;
   }
   return false;
-}
-
-/// For how long no contact of a rock that flies closes, at the least, s.
-double timeOfOpenContacts(const RockBody& body, double gravity)
-{
-  double first = std::numeric_limits<double>::infinity();
-  const Vec3 spin = body.state.angularVelocity();
-  const double turning =
-    2.0 * spin.squaredNorm() * body.block.radius() + 2.0 * spin.norm() * body.state.velocity.norm();
-  for (const Contact& c : body.contacts)
-  {
-    first = std::min(first,
-      timeToCover(std::max(0.0, c.gap()), approachOf(body.state, spin, c.point, c.normal),
-        gravity + 2.0 * turning));
-  }
-  return first;
 }
 
 /// Gap that may close however the rock goes, as rounding hides it, share of r.
@@ -311,9 +293,6 @@ void stayInContact(Fall& fall)
       kind = StepKind::Impact;
       h = std::min(h, small);
     }
-    const bool flies = kind == StepKind::Impact && !anyClosed(body.contacts);
-    const double open =
-      flies ? std::min(ahead, timeOfOpenContacts(body, fall.parameters.gravity)) : 0.0;
     forgetFarContacts(fall, h);
     // What gives way first changes the ground under the step, which is then looked at anew.
     if ((fall.structures.solid() && breakTrees(fall, h)) ||
@@ -322,7 +301,8 @@ void stayInContact(Fall& fall)
       continue;
     }
     // Hops have a closed form, and need no steps.
-    if (flies && fall.openTime >= body.ringing && flyFromContact(fall, small, open))
+    if (kind == StepKind::Impact && !anyClosed(body.contacts) && fall.openTime >= body.ringing &&
+      flyFromContact(fall, small))
     {
       continue;
     }
