@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 using namespace rockfall;
@@ -17,81 +18,55 @@ using namespace rockfall::verification;
 namespace
 {
 
-/// The worst of many scenes.
-class Scenes
+/// Records the worst of many scenes, others than those of the project's tests; sceneOf(seed) is one.
+template <class SceneOf>
+void recordScenes(const std::string& subject, SceneOf&& sceneOf)
 {
-public:
-  explicit Scenes(std::string subject)
-    : subject_(std::move(subject))
+  const long first = fromEnvironment("ROCKFALL_FIRST_SCENE", 1000);
+  const long scenes = fromEnvironment("ROCKFALL_SCENES", count(20, 2000));
+  double made = 0.0, lost = 0.0, deepest = 0.0;
+  double heard = 0.0;
+  int longer = 0, otherBits = 0, run = 0;
+  for (long seed = first; seed < first + scenes; ++seed)
   {
-  }
-
-  void add(long seed, const SceneOutcome& outcome)
-  {
-    ++scenes_;
-    run_ += !outcome.refused;
-    givenUp_ += outcome.givenUp;
-    otherBits_ += !outcome.sameBits;
-    heard_ = std::max(heard_, outcome.heard);
-    tooDeep_ = std::max(tooDeep_, outcome.tooDeep);
+    const SceneOutcome outcome = runScene(sceneOf(std::uint64_t(seed)), count(20, 120));
+    run += !outcome.refused;
+    longer += outcome.givenUp;
+    heard = std::max(heard, outcome.heard);
+    otherBits += !outcome.sameBits;
     const double share = outcome.released > 0.0 ? outcome.made / outcome.released : 0.0;
-    made_ = std::max(made_, share);
-    lost_ = std::max(lost_, -share);
-    EXPECT_LE(outcome.made, 0.01 * outcome.released) << "scene " << seed;
-    EXPECT_LE(-outcome.made, 0.01 * outcome.released) << "scene " << seed;
+    made = std::max(made, share);
+    lost = std::max(lost, -share);
+    deepest = std::max(deepest, outcome.tooDeep);
+    EXPECT_LE(std::abs(outcome.made), 0.01 * outcome.released) << "scene " << seed;
     EXPECT_LE(outcome.gained, 0.01 * outcome.released) << "scene " << seed;
     EXPECT_EQ(outcome.tooDeep, 0.0) << "scene " << seed << ", " << outcome.worst;
   }
-
-  void record() const
-  {
-    const std::string all = std::to_string(scenes_) + " scenes";
-    recordAtLeast(
-      { subject_, "scenes that could be run, of " + all, "", "" }, run_, 0.9 * double(scenes_));
-    recordAtMost(
-      { subject_, "energy made, of that released, at most", "", "books of a scene" }, made_, 0.01);
-    recordAtMost(
-      { subject_, "energy lost to nowhere, of that released, at most", "", "books of a scene" },
-      lost_, 0.01);
-    recordAtMost(
-      { subject_, "depth of a vertex beyond what springs explain, of the radius", "", "" },
-      tooDeep_, 0.0);
-    report({ subject_, "scenes given up, as they take too long", "", "" }, givenUp_);
-    recordAtMost({ subject_, "time until that is heard", "s", "" }, heard_, 1.0);
-    recordAtMost(
-      { subject_, "scenes that differ between one thread and two", "", "" }, otherBits_, 0.0);
-  }
-
-private:
-  std::string subject_;
-  long scenes_ = 0;
-  int run_ = 0, givenUp_ = 0, otherBits_ = 0;
-  double made_ = 0.0, lost_ = 0.0, heard_ = 0.0, tooDeep_ = 0.0;
-};
+  const std::string all = std::to_string(scenes) + " scenes";
+  recordAtLeast(
+    { subject, "scenes that could be run, of " + all, "", "" }, run, 0.9 * double(scenes));
+  recordAtMost(
+    { subject, "energy made, of that released, at most", "", "books of a scene" }, made, 0.01);
+  recordAtMost(
+    { subject, "energy lost to nowhere, of that released, at most", "", "books of a scene" }, lost,
+    0.01);
+  recordAtMost({ subject, "depth of a vertex beyond what springs explain, of the radius", "", "" },
+    deepest, 0.0);
+  report({ subject, "scenes given up, as they take too long", "", "" }, longer);
+  recordAtMost({ subject, "time until that is heard", "s", "" }, heard, 1.0);
+  recordAtMost(
+    { subject, "scenes that differ between one thread and two", "", "" }, otherBits, 0.0);
+}
 
 } // namespace
 
-// Others than those of the project's tests.
 TEST(RandomScenes, MakeNoEnergyAndStayOutOfTheGround)
 {
-  const long first = fromEnvironment("ROCKFALL_FIRST_SCENE", 1000);
-  const long end = first + fromEnvironment("ROCKFALL_SCENES", count(20, 2000));
-  Scenes scenes("Random scenes");
-  for (long seed = first; seed < end; ++seed)
-  {
-    scenes.add(seed, runScene(randomScene(std::uint64_t(seed), 20, 2.0), count(20, 120)));
-  }
-  scenes.record();
+  recordScenes("Random scenes", [](std::uint64_t seed) { return randomScene(seed, 20, 2.0); });
 }
 
 TEST(RandomScenes, OfRoundRocksCloseTheirBooks)
 {
-  const long first = fromEnvironment("ROCKFALL_FIRST_SCENE", 1000);
-  const long end = first + fromEnvironment("ROCKFALL_SCENES", count(20, 2000));
-  Scenes scenes("Random scenes of round rocks");
-  for (long seed = first; seed < end; ++seed)
-  {
-    scenes.add(seed, runScene(roundScene(std::uint64_t(seed), 2.0), count(20, 120)));
-  }
-  scenes.record();
+  recordScenes(
+    "Random scenes of round rocks", [](std::uint64_t seed) { return roundScene(seed, 2.0); });
 }

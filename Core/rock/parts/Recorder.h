@@ -29,9 +29,9 @@ public:
   double nextTime() const { return double(next_) * interval_; }
   /// Records a sample at exactly this state and moves on to the next time.
   void record(const RockBody& body, const BlockState& at, bool contact);
-  /// Records all samples that fall into a step, interpolated (cubic in place, slerp in attitude).
-  /// Where the motion since the last knot is no uniform acceleration there is one before it. A step
-  /// that is none by itself, as the rock was struck within it, is gone through straight.
+  /// Records all samples that fall into a step, interpolated (cubic in place, slerp in attitude), and
+  /// a knot before it where the motion since the last one is no uniform acceleration. A step that is
+  /// none by itself, as the rock was struck within it, is gone through straight.
   void recordBetween(
     const RockBody& body, const BlockState& from, const BlockState& to, bool contact);
   /// A sample at a touch or a take-off.
@@ -56,7 +56,7 @@ private:
   void addEven(const BlockState& state, bool contact);
   void addKnot(const BlockState& state, bool contact);
   void addEvens(const BlockState& from, const BlockState& to, bool contact);
-  /// At the mean velocity, with knots where that of an end is another one.
+  /// Samples of a step at its mean velocity, with knots where that of an end is another one.
   void addStraight(const BlockState& from, const BlockState& to, bool contact);
   void addBeforeJump(BlockState state, bool contact);
   void addAfterJump(const BlockState& state, bool contact);

@@ -19,7 +19,7 @@ public:
   SlopeSprings(const Surface& surface, const SimulationParameters& parameters, const Block& block);
 
   double leastPenalty() const { return least_; } ///< pₙ of a rock that comes slowly, N/m.
-  double penalty() const { return penalty_; }    ///< Of the contacts that are made now, N/m.
+  double penalty() const { return penalty_; }    ///< pₙ of the contacts that are made now, N/m.
   /// For a touch-down: no stiffer than needed to stop the rock in time.
   void beginContact(const RockBody& body) { penalty_ = this->stoppingPenalty(body); }
   /// A rock that slides into something may be faster than when its contact began.

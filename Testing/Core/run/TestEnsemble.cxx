@@ -442,6 +442,26 @@ TEST(Ensemble, BadInputIsOneClearError)
   expectError<ParameterError>(with([](Rock&, P& p) { p.normalPenalty = 1.4e6; }),
     "NormalPenalty is 1400000 N/m, too soft for block 7: at rest its ");
   EXPECT_NO_THROW(with([](Rock&, P& p) { p.normalPenalty = 1.7e6; })());
+  // Alone a rock has the stiffness of its mass; together they have the paper's.
+  for (const bool together : { false, true })
+  {
+    const auto heavy = with(
+      [=](Rock& r, P& p)
+      {
+        r.shape = makeShape(Shape::Cube, 1000.0);
+        r.position.z() += 20.0;
+        p.gravity = 1000.0;
+        p.rockRockContact = together;
+      });
+    if (together)
+    {
+      expectError<ParameterError>(heavy, "too soft for block 7: at rest its ");
+    }
+    else
+    {
+      EXPECT_NO_THROW(heavy());
+    }
+  }
   expectError<ParameterError>(with([](Rock&, P& p) { p.endTime = NAN; }), "EndTime is nan");
   expectError<ParameterError>(with([](Rock&, P& p) { p.outputInterval = 0; }), "OutputInterval");
   expectError<ParameterError>(with([](Rock&, P& p) { p.iterations = 0; }), "Iterations is 0");
