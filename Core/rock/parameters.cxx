@@ -50,8 +50,8 @@ double SimulationParameters::penaltyFor(double mass) const
   // with 600 by 5 to 28 % on hard ground, by 12 to 40 % out of scars. A stiffer one changes jumps and
   // ways by 2 % at most, and takes shorter steps.
   constexpr double frequency = 1e4;
-  const bool alone = this->normalPenalty == 0.0 && !this->rockRockContact;
-  return std::max(this->pairPenalty(), alone ? frequency * frequency * mass : 0.0);
+  return std::max(
+    this->pairPenalty(), this->normalPenalty == 0.0 ? frequency * frequency * mass : 0.0);
 }
 
 double SimulationParameters::pairPenalty() const

@@ -67,10 +67,12 @@ struct SimulationParameters
   int maxOpenClose = 12; ///< Open–close iterations before a step is cut, ≥ 2.
   int maxCuts = 10;      ///< Halvings of a step before it is taken unsettled, ≥ 0.
 
-  /// pₙ of a rock (kg) on the slope, N/m: `normalPenalty`; of 0 m (10⁴ rad/s)² and no less than the
-  /// paper's, which rocks have that fall together.
+  /// pₙ of a rock (kg) on the slope, N/m, while no other is near: `normalPenalty`; of 0 m (10⁴
+  /// rad/s)² and no less than `pairPenalty`.
   double penaltyFor(double mass) const;
-  double pairPenalty() const; ///< pₙ between rocks, N/m: `normalPenalty`, or of 0 the paper's.
+  /// pₙ between rocks, and of what is near others on the slope, N/m: `normalPenalty`, or of 0 the
+  /// paper's.
+  double pairPenalty() const;
 
   void validate() const; ///< Throws ParameterError naming field and value.
 };

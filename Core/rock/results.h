@@ -72,7 +72,9 @@ struct ImpactEvent
   double approachSpeed = 0.0;   ///< Of the contact point along the normal, m/s.
   Vec3 velocityBefore = Vec3::Zero();
   Vec3 velocityAfter = Vec3::Zero();
-  double energyLoss = 0.0;  ///< By friction, restitution, scar and rolling resistance, J.
+  /// By friction, restitution, scar and rolling resistance, J. Between rocks < 0 where friction turns
+  /// back and gives more than the normal takes, with what another impact of the moment loses.
+  double energyLoss = 0.0;
   double restitution = 1.0; ///< The coefficient that was applied.
   double scarDepth = 0.0;   ///< Straight under the surface, m; 0: hard ground.
   double scarLength = 0.0;  ///< Along the surface, m.

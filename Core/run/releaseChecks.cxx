@@ -67,7 +67,7 @@ void requireStiff(const Rock& rock, const Block& block, const SimulationParamete
 {
   const double weight = block.mass() * p.gravity;
   const double most = kDeepestAtRest * block.radius();
-  const double penalty = p.penaltyFor(block.mass());
+  const double penalty = p.rockRockContact ? p.pairPenalty() : p.penaltyFor(block.mass());
   if (weight > most * penalty)
   {
     throw ParameterError("NormalPenalty is " + numberText(penalty) + " N/m, too soft for block " +

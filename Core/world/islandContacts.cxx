@@ -48,7 +48,11 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   const double r = body.block.radius();
   const double speed = body.state.velocity.norm() + body.state.spin.norm() * r + side.pushed;
   const double reach = this->reachOf(speed, r, h);
-  body.inIsland = true;
+  if (!body.inIsland)
+  {
+    body.inIsland = true;
+    fall.springs.join(body);
+  }
   // Twice: beyond a concave edge planes serve a little further than their triangles.
   if (fall.ground.isClear(body, fall.structures, 2.0 * reach))
   {

@@ -57,7 +57,7 @@ void finishPairImpact(WorldState& world, RockPair& pair, bool over)
   pair.strikes = false;
   const double size = impact.impulse.norm();
   const double held = over ? 0.0 : springEnergyOf(pair.contacts);
-  const double loss = size > 0.0 ? std::max(0.0, impact.loss - held) : 0.0;
+  const double loss = size > 0.0 ? impact.loss - held : 0.0;
   pair.lastingLoss += impact.loss - loss; // springs that had been compressed before, or are now
   if (size <= 0.0)
   {

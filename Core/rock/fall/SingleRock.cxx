@@ -83,6 +83,7 @@ void SingleRock::advance(double until, double enough)
   if (body.inIsland)
   {
     body.inIsland = false;
+    fall_.springs.part(body);
     fall_.pressed = true;
     // Flight goes by them, and would hang on how the island was looked at.
     fall_.ground.forgetCandidates();

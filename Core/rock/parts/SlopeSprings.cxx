@@ -40,8 +40,42 @@ SlopeSprings::SlopeSprings(
   , parameters_(parameters)
   , least_(parameters.penaltyFor(block.mass()))
   , penalty_(least_)
-  , softness_(1.0 / least_ + block.largestCompliance())
 {
+}
+
+void SlopeSprings::part(const RockBody& body)
+{
+  least_ = parameters_.penaltyFor(body.block.mass());
+  penalty_ = this->stoppingPenalty(body);
+}
+
+void SlopeSprings::join(RockBody& body)
+{
+  least_ = parameters_.pairPenalty();
+  penalty_ = this->stoppingPenalty(body);
+  for (Contact& c : body.contacts)
+  {
+    if (!c.closed())
+    {
+      continue;
+    }
+    const Vec3 y = body.placed.rotation().transpose() * (c.point - body.state.position);
+    const Vec3 n = body.placed.rotation().transpose() * c.normal;
+    const Stiffness softer = this->stiffnessAt(body, n, y);
+    const double normal = softer.normal / c.stiffness, shear = softer.shear / c.shearStiffness;
+    if (normal >= 1.0)
+    {
+      continue;
+    }
+    // As far on in its swing as before, so that an impact leaves at the same speed.
+    c.offset = c.distance - c.gap() / std::sqrt(normal);
+    c.slip /= std::sqrt(shear);
+    c.stiffness *= normal;
+    c.frequency2 *= normal;
+    c.dashpot *= std::sqrt(normal);
+    c.shearStiffness *= shear;
+    c.shearDashpot *= std::sqrt(shear);
+  }
 }
 
 double SlopeSprings::travelLimit(const RockBody& body) const
@@ -112,8 +146,13 @@ bool SlopeSprings::holdLittle(const RockBody& body) const
 {
   // At the turning point of an impact nothing moves either, but the springs hold its energy; at
   // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
+  double softest = 1.0 / least_ + body.block.largestCompliance();
+  for (const Contact& c : body.contacts) // those of an island are softer
+  {
+    softest = std::max(softest, c.closed() ? 1.0 / c.stiffness : 0.0);
+  }
   const double settled =
-    body.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body.block.mass() * softness_);
+    body.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body.block.mass() * softest);
   const double held = body.normalEnergy + (body.stiff ? 0.0 : strainEnergy(body.block, body.state));
   return held <= 0.5 * body.block.mass() * settled * settled;
 }
@@ -164,16 +203,25 @@ double SlopeSprings::dampingRatioFor(int ground, double restitution)
   return ratio;
 }
 
+SlopeSprings::Stiffness SlopeSprings::stiffnessAt(
+  const RockBody& body, const Vec3& n, const Vec3& y) const
+{
+  const double shear = penalty_ * parameters_.shearRatio;
+  const bool strains = body.stiff && !parameters_.rigid;
+  const auto with = [&](double penalty, const Vec3& along)
+  { return penalty / (1.0 + (strains ? penalty * body.block.compliance(along, y) : 0.0)); };
+  return { with(penalty_, n), with(shear, n.unitOrthogonal()) };
+}
+
 void SlopeSprings::give(Contact& c, const RockBody& body, double restitution)
 {
   const Vec3 lever = c.point - body.state.position;
   const Vec3 y = body.placed.rotation().transpose() * lever;
   const Vec3 n = body.placed.rotation().transpose() * c.normal;
   const Vec3 t = n.unitOrthogonal();
-  const double shear = penalty_ * parameters_.shearRatio;
-  const bool strains = body.stiff && !parameters_.rigid;
-  c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * body.block.compliance(n, y) : 0.0));
-  c.shearStiffness = shear / (1.0 + (strains ? shear * body.block.compliance(t, y) : 0.0));
+  const Stiffness stiffness = this->stiffnessAt(body, n, y);
+  c.stiffness = stiffness.normal;
+  c.shearStiffness = stiffness.shear;
   const double speed = body.state.velocity.norm();
   const double approach = approachOf(body.state, body.state.angularVelocity(), c.point, c.normal);
   const bool down = approach > body.restingSpeed &&

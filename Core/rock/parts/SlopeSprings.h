@@ -24,6 +24,11 @@ public:
   void beginContact(const RockBody& body) { penalty_ = this->stoppingPenalty(body); }
   /// A rock that slides into something may be faster than when its contact began.
   void stiffen(const RockBody& body);
+  /// From now on the rock is stepped by itself.
+  void part(const RockBody& body);
+  /// From now on with others: sweeps over an island follow no springs that are stiffer than those
+  /// between rocks. Contacts go on with softer ones that hold the same energy.
+  void join(RockBody& body);
   /// Springs and dashpot of a contact that is about to close. `restitution`: of the ground there.
   void give(Contact& contact, const RockBody& body, double restitution);
 
@@ -41,13 +46,18 @@ public:
   bool carryAtRest(const RockBody& body) const;
 
 private:
-  double stoppingPenalty(const RockBody& body) const;     ///< Stiffness that stops it in time, N/m.
+  struct Stiffness
+  {
+    double normal, shear;
+  };
+  double stoppingPenalty(const RockBody& body) const; ///< Stiffness that stops it in time, N/m.
+  /// N/m, with the block behind the contact. `n`, `y`: in the block's frame.
+  Stiffness stiffnessAt(const RockBody& body, const Vec3& n, const Vec3& y) const;
   double dampingRatioFor(int ground, double restitution); ///< ζ of a class of ground, now.
 
   const Surface& surface_;
   const SimulationParameters& parameters_;
   double least_, penalty_;
-  double softness_;                        ///< Of a contact and the block behind it, m/N.
   std::vector<double> dampingRatios_;      ///< ζ by restitution class; < 0: not known yet.
   double dampedFor_ = -1.0, damped_ = 0.0; ///< The restitution looked up last, and its ζ.
 };

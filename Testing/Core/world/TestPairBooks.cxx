@@ -84,7 +84,9 @@ std::vector<Trajectory> strikeThrough(double gap, double restitution)
 TEST(PairBooks, EveryJouleIsOfAnImpactOrOfLastingContact)
 {
   const double fall = std::tan(radians(30.0));
-  for (const double e : { 0.0, 0.3, 0.8 })
+  // Falls 44 and 260 have a strike whose friction turns back and gives more than its normal takes.
+  for (const auto& [e, seed] : { std::pair(0.0, 3), std::pair(0.3, 3), std::pair(0.8, 3),
+         std::pair(0.8, 44), std::pair(0.8, 260) })
   {
     Pile pile;
     pile.awake = false;
@@ -93,7 +95,7 @@ TEST(PairBooks, EveryJouleIsOfAnImpactOrOfLastingContact)
       material(0.35, 28.0));
     pile.parameters.endTime = 6.0;
     pile.parameters.rockRestitution = e;
-    pile.rocks = cluster(20, 100.0 - 20.0 * fall, 3);
+    pile.rocks = cluster(20, 100.0 - 20.0 * fall, std::uint64_t(seed));
     pile.make();
     const Books books = booksOf(pile.fall->run());
     ASSERT_GT(books.given, 1e5);
