@@ -84,6 +84,7 @@ void SingleRock::advance(double until, double enough)
   {
     body.inIsland = false;
     fall_.springs.part(body);
+    fall_.freeUntil = 0.0;
     fall_.pressed = true;
     // Flight goes by them, and would hang on how the island was looked at.
     fall_.ground.forgetCandidates();

@@ -81,21 +81,26 @@ bool flyOverScar(Fall& fall, double small)
   {
     return false;
   }
-  fall.ground.ensurePatch(body, fall.structures, 0.0);
-  if (riseWithRock(fall))
+  double free = fall.freeUntil - body.state.time;
+  if (!(free > 0.0))
   {
-    return true;
+    fall.ground.ensurePatch(body, fall.structures, 0.0);
+    if (riseWithRock(fall))
+    {
+      return true;
+    }
+    free = fall.soil.freeOverScar(body, fall.ground);
+    if (!(free > small))
+    {
+      return false;
+    }
+    if (fall.soil.scar().turned() && fall.impact.age(body.state.time) > kOneImpact)
+    {
+      fall.impact.drawAnew();
+    }
+    fall.freeUntil = body.state.time + free;
   }
-  const double free = fall.soil.freeOverScar(body, fall.ground, fall.horizon - body.state.time);
-  if (!(free > small))
-  {
-    return false;
-  }
-  if (fall.soil.scar().turned() && fall.impact.age(body.state.time) > kOneImpact)
-  {
-    fall.impact.drawAnew();
-  }
-  advanceInFlight(fall, free);
+  advanceInFlight(fall, std::min(free, fall.horizon - body.state.time));
   checkEnd(fall, 0.0);
   return true;
 }

@@ -133,12 +133,10 @@ double SoilUnderRock::riseNow(
   return by < kHigherScar * scar_.depth() ? 0.0 : by;
 }
 
-double SoilUnderRock::freeOverScar(const RockBody& body, GroundNear& ground, double most) const
+double SoilUnderRock::freeOverScar(const RockBody& body, GroundNear& ground) const
 {
   const double speed = body.state.velocity.norm();
-  double duration = most;
-  duration =
-    std::min(duration, speed * duration > body.block.radius() ? body.block.radius() / speed : 1.0);
+  double duration = speed > body.block.radius() ? body.block.radius() / speed : 1.0;
   const double away = body.state.velocity.dot(scar_.normal());
   if (away > 0.0)
   {

@@ -49,9 +49,9 @@ public:
 
   // Motion in the soil
 
-  /// Lower bound of the time in which the rock, over nothing but slope, does not come to Λ, at most
-  /// `most` (s); 0: not known.
-  double freeOverScar(const RockBody& body, GroundNear& ground, double most) const;
+  /// Lower bound of the time in which the rock, over nothing but slope, does not come to Λ; 0:
+  /// not known.
+  double freeOverScar(const RockBody& body, GroundNear& ground) const;
   /// Flies for so long (s), braked. Whether soil took anything.
   bool fly(RockBody& body, double duration);
   /// After a step of contact of `h` (s) from `before` to `state`. Whether soil took anything.
