@@ -144,9 +144,22 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     {
       continue;
     }
-    // … nor before the two lines meet.
+    // … nor before they have come to each other where they are nearest now, …
     const Vec3& q = patch.nodes[g.nodes[0]].position;
     const Vec3 u = p1 - p, w = patch.nodes[g.nodes[1]].position - q;
+    if (const Vec3 apart = betweenSegments(p, u, q, w); apart.squaredNorm() > 0.0)
+    {
+      const Vec3 n = apart.normalized();
+      const double highest = std::max(n.dot(q), n.dot(q + w));
+      least = std::max(least,
+        std::min(timeToCover(n.dot(p) - highest, rate(n, p), gravity + turning),
+          timeToCover(n.dot(p1) - highest, rate(n, p1), gravity + turning)));
+      if (least >= time)
+      {
+        continue;
+      }
+    }
+    // … nor before the two lines meet.
     double s, t;
     if (closestOnLines(p, u, q, w, s, t))
     {

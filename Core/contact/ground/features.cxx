@@ -245,6 +245,18 @@ std::optional<Contact> faceVertex(
   return c;
 }
 
+Vec3 betweenSegments(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w)
+{
+  const Vec3 r = p - q;
+  const double uu = u.squaredNorm(), ww = w.squaredNorm(), uw = u.dot(w), ur = u.dot(r),
+               wr = w.dot(r);
+  const double across = uu * ww - uw * uw;
+  double s = across > 0.0 ? std::clamp((uw * wr - ur * ww) / across, 0.0, 1.0) : 0.0;
+  const double t = std::clamp((uw * s + wr) / ww, 0.0, 1.0);
+  s = std::clamp((uw * t - ur) / uu, 0.0, 1.0);
+  return r + s * u - t * w;
+}
+
 bool closestOnLines(
   const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w, double& s, double& t)
 {

@@ -1,7 +1,9 @@
 /// Height of a rock over the ground, and what is sure of its flight, against all faces over all CFEs.
 
 #include "block/flight.h"
+#include "contact/ground/candidates.h"
 #include "contact/ground/heightOver.h"
+#include "contact/ground/motion.h"
 #include "contact/ground/timeToTouch.h"
 #include "form.h"
 #include "slopes.h"
@@ -217,6 +219,60 @@ TEST(TimeToTouch, NoRockTouchesBeforeItIsSaid)
     }
   }
   EXPECT_GT(touched, someOf(400, 20) / 4);
+}
+
+// Pairs of features next to the rock: from look to look, as it slides and hops over the ground.
+TEST(TimeToTouch, NoPairClosesBeforeItIsSaid)
+{
+  std::mt19937_64 random(13);
+  int looks = 0;
+  for (int k = 0; k < someOf(400, 40); ++k)
+  {
+    const Terrain terrain = roughSlope(random, 0.05 * (1 + k % 10), k % 3 == 1);
+    const double height = std::array{ 1e-6, 1e-4, 0.01 }[std::size_t(k / 3 % 3)];
+    Flying flying(terrain, kShapes4[k % 4], 0.5, height, random);
+    if (k % 5 == 0) // edges along ridges, or nearly
+    {
+      flying.state.orientation = Quat(Eigen::AngleAxisd(0.002 * k, Vec3(0.6, 0.0, 0.8)));
+      flying.raise(height);
+    }
+    if (k % 3 == 1) // along the ground
+    {
+      flying.state.velocity.z() = 0.0;
+      flying.state.spin *= 0.01;
+    }
+    else if (k % 3 == 2) // turns on the spot
+    {
+      flying.state.velocity.setZero();
+    }
+    const double r = flying.block.radius(), reach = 0.1;
+    SurfacePatch patch;
+    gatherPatch(Surface::asSurveyed(terrain), 4.0, 12.0, 4.0, 12.0, patch);
+    CandidatePairs candidates;
+    gatherCandidates(flying.rock, flying.state, patch, reach, candidates);
+    BlockState state = flying.state;
+    for (int look = 0; look < 20; ++look)
+    {
+      flying.rock.place(flying.block, state);
+      const double room = candidates.room(state, r, 0.0);
+      if (room < 0.01 * reach || leastHeight(flying.rock, flying.window) < 1e-7)
+      {
+        break;
+      }
+      const double fastest = state.velocity.norm() + flying.block.largestRimSpeed(state.spin);
+      const double free = timeToClose(
+        flying.rock, state, patch, candidates, kGravity, timeToCover(room, fastest, kGravity));
+      ASSERT_GT(free, 0.0) << k << ", " << look;
+      ++looks;
+      for (int i = 1; i <= 16; ++i)
+      {
+        flying.rock.place(flying.block, fly(flying.block, state, kGravity, free * i / 16.0));
+        ASSERT_GT(leastHeight(flying.rock, flying.window), -1e-9) << k << ", " << look << ", " << i;
+      }
+      state = fly(flying.block, state, kGravity, free);
+    }
+  }
+  EXPECT_GT(looks, someOf(400, 40));
 }
 
 } // namespace rockfall::testing
