@@ -9,7 +9,7 @@ mass_fall_parts/scenario.py and docs/mass_falls.md. Run it with
     bash Examples/run.sh mass_fall.py [--output FOLDER --iterations N --time-step S --frames N]
 
 and find in output/mass_fall counts.csv and counts.txt, map.png, oblique.png, stops.png, and the movie
-mass_fall.ogv; rocks.pvd, a time series of the shown iteration, opens in ParaView.
+mass_fall.ogv; rocks.pvd, a time series of the most typical iteration, opens in ParaView.
 """
 import argparse
 import os
@@ -24,7 +24,7 @@ from paraview.simple import *
 
 import mass_fall_pictures as pictures
 import scenario
-from counts import interval, write_counts
+from counts import interval, typical, write_counts
 from rockfall_tables import columns_of
 
 SEED, END, INTERVAL = 20143, 30.0, 0.1
@@ -140,9 +140,11 @@ for bank in (False, True):
 write_counts(cases, in_folder("counts.csv"), in_folder("counts.txt"))
 print(open(in_folder("counts.txt")).read())
 
-say("Pictures")
+shown = typical(cases)
+say(f"Pictures, of iteration {shown}")
+simulations["with collisions"].ShownIteration = shown
 pictures.stops_picture(stops, in_folder("stops.png"))
-pictures.map_picture(slopes, simulations, stops, in_folder("map.png"))
+pictures.map_picture(slopes, simulations, stops, shown, in_folder("map.png"))
 pictures.oblique_picture(slopes, simulations, in_folder("oblique.png"), END)
 if chosen.frames:
     say(f"Movie: {chosen.frames} frames")

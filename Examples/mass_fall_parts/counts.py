@@ -14,6 +14,12 @@ def interval(counts, share=0.95, draws=20000, seed=1):
     return counts.mean(), low, high
 
 
+def typical(cases):
+    """The iteration whose numbers on the road, with collisions and without, are nearest to their means."""
+    road = [np.asarray(cases[name]["road"], float) for name in ("without collisions", "with collisions")]
+    return int(np.argmin(sum(abs(counts - counts.mean()) for counts in road)))
+
+
 def write_counts(cases, table, text):
     """`cases`: {name: {place: counts per iteration}}; places are step, foot and road."""
     with open(table, "w", newline="") as file:

@@ -68,8 +68,8 @@ def paths_of(simulation, iteration):
     return produce(polydata)
 
 
-def map_picture(slopes, simulations, stops, path):
-    """Two maps side by side: iteration 0 without collisions and with them."""
+def map_picture(slopes, simulations, stops, shown, path):
+    """Two maps, one over the other: iteration `shown` without collisions and with them."""
     size = (1700, 1000)
     view = new_view(size)
     ground = ground_of(slopes[False])
@@ -84,8 +84,8 @@ def map_picture(slopes, simulations, stops, path):
         flat(lines, view, [0.42, 0.38, 0.28], LineWidth=1.0, by=[0.0, up, 0.1])
         flat(strip(ground, *scenario.ROAD), view, ROAD_COLOUR, **shift)
         flat(strip(ground, scenario.CREST - 0.25, scenario.CREST + 0.25, 0.3), view, BANK_COLOUR, **shift)
-        flat(paths_of(simulations[name], 0), view, PATH, LineWidth=1.5, by=[0.0, up, 20.0])
-        own = stops[name][:scenario.ROCKS] + [0.0, up, 60.0]
+        flat(paths_of(simulations[name], shown), view, PATH, LineWidth=1.5, by=[0.0, up, 20.0])
+        own = stops[name][shown * scenario.ROCKS:(shown + 1) * scenario.ROCKS] + [0.0, up, 60.0]
         dots = make_polydata(own)
         dots.SetVerts(cells(np.arange(len(own))[:, None]))
         flat(produce(dots), view, INK, Representation="Points", PointSize=9.0, RenderPointsAsSpheres=0)
@@ -98,9 +98,10 @@ def map_picture(slopes, simulations, stops, path):
     write(view, "41 rocks of one iteration: paths (purple) and where they end (black)", (0.02, 0.95), 26, bold=True)
     right = scenario.LENGTH + 3.0
     for k, name in enumerate(("with collisions", "without collisions")):
-        count = int((stops[name][:scenario.ROCKS, 0] >= scenario.ROAD[0]).sum())
+        on_road = (stops[name][:, 0] >= scenario.ROAD[0]).reshape(-1, scenario.ROCKS).sum(axis=1)
         u, v = seen_at(view, (right, k * (scenario.WIDTH + gap) + 0.55 * scenario.WIDTH, 0.0))
-        write(view, f"{name}:\n{count} come to the road", (u, v), 24, bold=True)
+        text = f"{name}:\n{on_road[shown]} come to the road,\nmean of {len(on_road)}: {on_road.mean():.1f}"
+        write(view, text, (u, v), 24, bold=True)
         u, v = seen_at(view, (right, k * (scenario.WIDTH + gap) + 0.2 * scenario.WIDTH, 0.0))
         write_lines(view, ["grey: road", "green: crest of the", "embankment planned", "contours: 2 m"], (u, v), 20)
     bar = make_polydata([[0.0, -2.5, 70.0], [20.0, -2.5, 70.0]])
@@ -122,13 +123,13 @@ def look_uphill(view):
 
 
 def oblique_picture(slopes, simulations, path, end):
-    """The rocks at rest, after iteration 0 with collisions."""
+    """The rocks at rest, after the shown iteration with collisions."""
     view = new_view((1600, 1000), SKY)
     ground = ground_of(slopes[False])
     show_ground(view, ground, True)
     name = "with collisions"
     show_rocks(view, simulations[name], ground, "oblique")
-    flat(paths_of(simulations[name], 0), view, PATH, LineWidth=1.5)
+    flat(paths_of(simulations[name], int(simulations[name].ShownIteration)), view, PATH, LineWidth=1.5)
     view.ViewTime = end
     look_uphill(view)
     write(view, "41 rocks that have hit each other: on the step, at the foot, on the road and beyond", (0.02, 0.945), 28, bold=True)
