@@ -70,11 +70,12 @@ void requireStiff(const Rock& rock, const Block& block, const SimulationParamete
   const double penalty = p.rockRockContact ? p.pairPenalty() : p.penaltyFor(block.mass());
   if (weight > most * penalty)
   {
-    throw ParameterError("NormalPenalty is " + numberText(penalty) + " N/m, too soft for block " +
-      std::to_string(rock.blockId) + ": at rest its " + numberText(block.mass()) +
-      " kg would lie " + numberText(weight / penalty) + " m deep in the ground, more than " +
-      numberText(100.0 * kDeepestAtRest) + " % of its radius; it needs " +
-      numberText(weight / most) + " N/m or more");
+    const std::string typed = p.normalPenalty > 0.0 ? "" : "0, that is ";
+    throw ParameterError("NormalPenalty is " + typed + numberText(penalty) +
+      " N/m, too soft for block " + std::to_string(rock.blockId) + ": at rest its " +
+      numberText(block.mass()) + " kg would lie " + numberText(weight / penalty) +
+      " m deep in the ground, more than " + numberText(100.0 * kDeepestAtRest) +
+      " % of its radius; it needs " + numberText(weight / most) + " N/m or more");
   }
 }
 

@@ -455,7 +455,8 @@ TEST(Ensemble, BadInputIsOneClearError)
       });
     if (together)
     {
-      expectError<ParameterError>(heavy, "too soft for block 7: at rest its ");
+      expectError<ParameterError>(
+        heavy, "NormalPenalty is 0, that is 1000000000 N/m, too soft for block 7: at rest its ");
     }
     else
     {
