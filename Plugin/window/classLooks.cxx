@@ -26,6 +26,35 @@ constexpr Colour kNone = { 0.80, 0.84, 0.80 };
 constexpr std::array<Colour, 3> kClasses = { { { 1.00, 0.902, 0.502 }, { 0.878, 0.541, 0.18 },
   { 0.545, 0.039, 0.102 } } };
 
+/// What a number stands for.
+struct Meaning
+{
+  std::string name;
+  Colour colour;
+};
+using Meanings = std::vector<Meaning>; ///< Of 0, 1, …
+
+// Colours that colour-blind people tell apart (Okabe & Ito 2008).
+constexpr Colour kBlue = { 0.0, 0.447, 0.698 }, kGreen = { 0.0, 0.62, 0.451 },
+                 kOrange = { 0.902, 0.624, 0.0 }, kRed = { 0.835, 0.369, 0.0 },
+                 kPink = { 0.8, 0.475, 0.655 }, kGrey = { 0.6, 0.6, 0.6 };
+
+/// Of the codes that RockfallSimulationOutput.md lists; none: the array has no such codes.
+Meanings meaningsOf(const std::string& array)
+{
+  if (array == "Fate" || array == "FateCode")
+  {
+    return { { "rested", kGreen }, { "left the domain", kGrey }, { "moving", kOrange },
+      { "caught", kBlue }, { "lost in nodata", kPink }, { "broken", kRed } };
+  }
+  if (array == "Outcome")
+  {
+    return { { "barrier held", kBlue }, { "barrier broke", kRed }, { "recorded", kGrey },
+      { "stem broke", kOrange }, { "stem turned it", kGreen } };
+  }
+  return {};
+}
+
 /// Colour of class `k` of `count`, 1 the weakest.
 Colour colourOf(std::size_t k, std::size_t count)
 {
@@ -92,8 +121,6 @@ std::vector<std::string> namesOf(const std::vector<std::string>& thresholds)
   return names;
 }
 
-} // namespace
-
 bool isIntensity(const std::string& array)
 {
   const std::string begin = "Intensity"; // LiDAR has an array of that name
@@ -102,35 +129,52 @@ bool isIntensity(const std::string& array)
     array.back() == 'a';
 }
 
-void nameClasses(const Shown& shown, vtkSMProxy* table)
+Meanings classesOf(const Shown& shown)
 {
   const std::vector<std::string> names = namesOf(thresholdsOf(shown));
-  std::string all;
-  for (const std::string& name : names)
+  Meanings classes;
+  for (std::size_t k = 0; k < names.size(); ++k)
   {
-    all += name + ';';
+    classes.push_back({ names[k], colourOf(k, names.size() - 1) });
+  }
+  return classes;
+}
+
+} // namespace
+
+bool nameNumbers(const std::string& array, const Shown& shown, vtkSMProxy* table)
+{
+  const Meanings meanings = isIntensity(array) ? classesOf(shown) : meaningsOf(array);
+  if (meanings.empty())
+  {
+    return false;
+  }
+  std::string all;
+  for (const Meaning& meaning : meanings)
+  {
+    all += meaning.name + ';';
   }
   constexpr const char* done = "RockfallClasses";
   if (table->HasAnnotation(done) && table->GetAnnotation(done) == all)
   {
-    return;
+    return true;
   }
   table->SetAnnotation(done, all.c_str());
   vtkSMPropertyHelper texts(table, "Annotations");
-  texts.SetNumberOfElements(unsigned(2 * names.size()));
+  texts.SetNumberOfElements(unsigned(2 * meanings.size()));
   std::vector<double> colours;
   // A legend begins at its top, where the strongest class belongs.
-  for (std::size_t row = 0; row < names.size(); ++row)
+  for (std::size_t row = 0; row < meanings.size(); ++row)
   {
-    const std::size_t k = names.size() - 1 - row;
+    const std::size_t k = meanings.size() - 1 - row;
     texts.Set(unsigned(2 * row), std::to_string(k).c_str());
-    texts.Set(unsigned(2 * row + 1), names[k].c_str());
-    const Colour colour = colourOf(k, names.size() - 1);
-    colours.insert(colours.end(), colour.begin(), colour.end());
+    texts.Set(unsigned(2 * row + 1), meanings[k].name.c_str());
+    colours.insert(colours.end(), meanings[k].colour.begin(), meanings[k].colour.end());
   }
   vtkSMPropertyHelper(table, "IndexedColors").Set(colours.data(), unsigned(colours.size()));
   set(table, "IndexedLookup", 1);
   table->UpdateVTKObjects();
+  return true;
 }
 
 } // namespace rockfall::window

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Legend of the arrays Intensity… of a hazard map: a colour and a name a class, no numbers.
+/// Legends of arrays whose numbers stand for something: a colour and a name each, no numbers.
 
 #include "looks.h"
 
@@ -12,11 +12,9 @@ class vtkSMProxy;
 namespace rockfall::window
 {
 
-/// Whether an array is one of classes of intensity.
-bool isIntensity(const std::string& array);
-
-/// Gives a palette one colour and one name for each class that the source's thresholds make. Names
-/// and colours that were changed by hand stay until the thresholds change.
-void nameClasses(const Shown& shown, vtkSMProxy* table);
+/// Gives the palette of Fate, Outcome, or Intensity… of a hazard map one colour and one name for each
+/// number; of Intensity… those of the source's thresholds. What was changed by hand stays, until the
+/// thresholds change. Returns whether the array is one of these.
+bool nameNumbers(const std::string& array, const Shown& shown, vtkSMProxy* table);
 
 } // namespace rockfall::window

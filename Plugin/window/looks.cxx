@@ -108,6 +108,8 @@ constexpr Quantity kQuantities[] = {
   { "Mass", "Mass", "kg", &kFlow },
   { "Width", "Width", "m", &kFlow },
   { "Share", "Share of the rocks", "", &kHeat },
+  { "Fate", "Fate", "", &kHeat },
+  { "Outcome", "Outcome", "", &kHeat },
 };
 
 void setColour(vtkSMProxy* proxy, const Colour& colour)
@@ -364,9 +366,8 @@ void rescale(vtkSMProxy* representation, vtkSMViewProxy* view)
     return;
   }
   const std::string array = colouredBy(representation);
-  if (isIntensity(array))
+  if (nameNumbers(array, shownBy(representation), table))
   {
-    nameClasses(shownBy(representation), table);
     return;
   }
   double range[2] = { std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest() };

@@ -19,6 +19,7 @@ def met():
     assert release.Terrain.GetXMLName() == "DrawnStructure"
     rocks = servermanager.Fetch(fall, idx=4)
     assert rocks.GetNumberOfPoints() > 0.5 * 200, f"{rocks.GetNumberOfPoints()} of 200 rocks met the net"
+    simple.ColorBy(simple.Show(simple.OutputPort(fall, 4), simple.GetRenderView()), ("POINTS", "Outcome"))
 
 
 def further():
@@ -26,6 +27,15 @@ def further():
     assert first.GetXMLName() == "DrawnStructure", first.GetXMLName()
     away = min(abs(net.Points[k] - first.Points[k]) for k in (0, 3))  # the test slope falls along x
     assert away > 3.0, f"a second net stands {away} m from the first"
+    named(simple.GetColorTransferFunction("Outcome"))
+
+
+def named(table):
+    """Met rocks are coloured by words, not by numbers."""
+    words = dict(zip(table.Annotations[::2], table.Annotations[1::2]))
+    assert table.InterpretValuesAsCategories and words["0"] == "barrier held" and words["1"] == "barrier broke", words
+    bar = simple.GetScalarBar(table, simple.GetRenderView())
+    assert bar.Visibility and bar.Title == "Outcome", bar.Title
 
 
 [drawn, met, further][number - 1]()
