@@ -38,6 +38,21 @@ struct Box
   }
 };
 
+/// Whether an edge of the rock and a ridge, with `apart` (m) from the ridge to the edge between their
+/// nearest points, are outside of the ground and of the rock: what has just gone in is apart, too, and
+/// goes away.
+bool isOutside(const PlacedBlock& rock, int edge, const SurfacePatch& patch,
+  const SurfacePatch::Ridge& ridge, const Vec3& apart)
+{
+  const std::array<int, 2>& faces = rock.block().shape().edges()[edge].faces;
+  const double sure = kSureTravel * rock.block().radius();
+  const auto isOut = [&](const Vec3& n0, const Vec3& n1, const Vec3& way)
+  { return n0.dot(way) > sure || n1.dot(way) > sure; };
+  return isOut(patch.triangles[ridge.triangles[0]].normal,
+           patch.triangles[ridge.triangles[1]].normal, apart) &&
+    isOut(rock.normal(faces[0]), rock.normal(faces[1]), -apart);
+}
+
 } // namespace
 
 RockTravel::RockTravel(const PlacedBlock& start)
@@ -144,22 +159,9 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     {
       continue;
     }
-    // … nor before they have come to each other where they are nearest now, …
+    // … nor before the two lines meet, …
     const Vec3& q = patch.nodes[g.nodes[0]].position;
     const Vec3 u = p1 - p, w = patch.nodes[g.nodes[1]].position - q;
-    if (const Vec3 apart = betweenSegments(p, u, q, w); apart.squaredNorm() > 0.0)
-    {
-      const Vec3 n = apart.normalized();
-      const double highest = std::max(n.dot(q), n.dot(q + w));
-      least = std::max(least,
-        std::min(timeToCover(n.dot(p) - highest, rate(n, p), gravity + turning),
-          timeToCover(n.dot(p1) - highest, rate(n, p1), gravity + turning)));
-      if (least >= time)
-      {
-        continue;
-      }
-    }
-    // … nor before the two lines meet.
     double s, t;
     if (closestOnLines(p, u, q, w, s, t))
     {
@@ -189,6 +191,16 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
       {
         least = std::max(least, timeToCover(distance, rate(n, c), gravity + carried / sine));
       }
+    }
+    // … nor before they have come to each other along the line between their nearest points.
+    const Vec3 apart = betweenSegments(p, u, q, w);
+    if (isOutside(rock, pair.rock, patch, g, apart))
+    {
+      const Vec3 n = apart.normalized();
+      const double highest = std::max(n.dot(q), n.dot(q + w));
+      least = std::max(least,
+        std::min(timeToCover(n.dot(p) - highest, rate(n, p), gravity + turning),
+          timeToCover(n.dot(p1) - highest, rate(n, p1), gravity + turning)));
     }
     time = std::min(time, least);
   }

@@ -351,7 +351,7 @@ void guardPenetrations(Fall& fall, const CandidatePairs& candidates)
   double pressed = 0.0;
   for (const Contact& c : body.contacts)
   {
-    pressed = std::max(pressed, -c.gap());
+    pressed = std::max(pressed, std::min(-c.gap(), -c.distance)); // by force, and by place
   }
   guardPenetration(body.placed, fall.ground.patch(), candidates,
     kLooseOverlap * body.block.radius() + 2.0 * pressed, body.contacts);

@@ -52,7 +52,7 @@ void SlopeSprings::part(const RockBody& body)
 void SlopeSprings::join(RockBody& body)
 {
   least_ = parameters_.pairPenalty();
-  penalty_ = this->stoppingPenalty(body);
+  penalty_ = this->stoppingPenalty(body, springEnergyOf(body.contacts));
   for (Contact& c : body.contacts)
   {
     if (!c.closed())
@@ -168,12 +168,13 @@ bool SlopeSprings::carryAtRest(const RockBody& body) const
     });
 }
 
-double SlopeSprings::stoppingPenalty(const RockBody& body) const
+double SlopeSprings::stoppingPenalty(const RockBody& body, double held) const
 {
   // All that moves in one spring.
   const double depth =
     std::min(kDeepestImpact * body.block.radius(), kDeepestOfThin * body.block.thickness());
-  return std::max(least_, 2.0 * rigidKineticEnergy(body.block, body.state) / (depth * depth));
+  return std::max(
+    least_, 2.0 * (rigidKineticEnergy(body.block, body.state) + held) / (depth * depth));
 }
 
 void SlopeSprings::stiffen(const RockBody& body)

@@ -50,7 +50,8 @@ private:
   {
     double normal, shear;
   };
-  double stoppingPenalty(const RockBody& body) const; ///< Stiffness that stops it in time, N/m.
+  /// Stiffness that stops it in time, N/m. `held`: energy that springs hold already, J.
+  double stoppingPenalty(const RockBody& body, double held = 0.0) const;
   /// N/m, with the block behind the contact. `n`, `y`: in the block's frame.
   Stiffness stiffnessAt(const RockBody& body, const Vec3& n, const Vec3& y) const;
   double dampingRatioFor(int ground, double restitution); ///< ζ of a class of ground, now.

@@ -275,4 +275,32 @@ TEST(TimeToTouch, NoPairClosesBeforeItIsSaid)
   EXPECT_GT(looks, someOf(400, 40));
 }
 
+// A beam that lies across a ridge, both level: whatever rounding has made of its distance, it may
+// close at once, unless it is surely apart.
+TEST(TimeToTouch, AnEdgeThatLiesOnARidgeIsNotFree)
+{
+  const Terrain roof =
+    makeSlope(17, 1.0, [](double x, double) { return 10.0 - 0.5 * std::abs(x - 8.0); });
+  SurfacePatch patch;
+  gatherPatch(Surface::asSurveyed(roof), 4.0, 12.0, 4.0, 12.0, patch);
+  const Block beam(makeBox(Vec3(3.0, 0.3, 0.3)), 2700.0, 5e10, 0.2);
+  for (const double distance : { 1e-3, 0.0, -1e-15, -1e-12, -1e-6, -1e-4, -1e-3 })
+  {
+    for (const double fall : { -5.0, -0.05, 0.05 }) // m/s
+    {
+      BlockState state;
+      state.orientation = Quat(Eigen::AngleAxisd(radians(45.0), Vec3::UnitX()));
+      state.position = Vec3(8.03, 8.5, 10.0 + 0.15 * std::sqrt(2.0) + distance);
+      state.velocity.z() = fall;
+      PlacedBlock rock;
+      rock.place(beam, state);
+      CandidatePairs candidates;
+      gatherCandidates(rock, state, patch, 0.1, candidates);
+      const double free = timeToClose(rock, state, patch, candidates, kGravity, 0.02);
+      const double sure = distance > 0.0 ? timeToCover(distance, -fall, kGravity) : 0.0;
+      EXPECT_NEAR(free, std::min(0.02, sure), 1e-9) << distance << ", " << fall;
+    }
+  }
+}
+
 } // namespace rockfall::testing

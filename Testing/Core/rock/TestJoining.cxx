@@ -59,6 +59,35 @@ TEST(Joining, KeepsTheEnergyAndTheReboundOfAnImpact)
   }
 }
 
+TEST(Joining, StopsAFastRockWithinATenthOfItsRadius)
+{
+  const Terrain ground = floorSlope();
+  const Surface surface(ground, 1, 0);
+  for (const double volume : { 0.1, 1.0, 100.0 })
+  {
+    const Block block(makeShape(Shape::Cube, volume), 2700.0, 5e10, 0.2);
+    SimulationParameters p;
+    p.rockRockContact = true;
+    SlopeSprings springs(surface, p, block);
+    RockBody body(block);
+    body.state.position = Vec3(50.0, 50.0, 0.5 * std::cbrt(volume));
+    body.state.velocity.z() = -50.0;
+    body.placed.place(block, body.state);
+    springs.beginContact(body);
+    Contact c;
+    c.point = Vec3(50.0, 50.0, 0.0);
+    c.cfe = ground.cfeAt(50.0, 50.0);
+    springs.give(c, body, 0.6);
+    // Where it turns the spring holds all of its energy.
+    c.state = ContactState::Locked;
+    c.distance = -50.0 * std::sqrt(block.mass() / c.stiffness);
+    body.contacts = { c };
+    body.state.velocity.setZero();
+    springs.join(body);
+    EXPECT_LE(-body.contacts[0].gap(), (0.1 + 1e-9) * block.radius()) << volume;
+  }
+}
+
 TEST(Joining, SpringsOfTheUserStay)
 {
   const Terrain ground = floorSlope();

@@ -456,7 +456,7 @@ TEST(Ensemble, BadInputIsOneClearError)
     if (together)
     {
       expectError<ParameterError>(
-        heavy, "NormalPenalty is 0, that is 1000000000 N/m, too soft for block 7: at rest its ");
+        heavy, "NormalPenalty is 0, that is 1e+09 N/m, too soft for block 7: at rest its ");
     }
     else
     {
