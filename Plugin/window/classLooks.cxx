@@ -1,6 +1,7 @@
 #include "classLooks.h"
 
 #include "proxyNumbers.h"
+#include "rock/results.h"
 
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
@@ -44,8 +45,12 @@ Meanings meaningsOf(const std::string& array)
 {
   if (array == "Fate" || array == "FateCode")
   {
-    return { { "rested", kGreen }, { "left the domain", kGrey }, { "moving", kOrange },
-      { "caught", kBlue }, { "lost in nodata", kPink }, { "broken", kRed } };
+    Meanings fates;
+    for (const Colour& colour : { kGreen, kGrey, kOrange, kBlue, kPink, kRed })
+    {
+      fates.push_back({ fateName(Fate(fates.size())), colour });
+    }
+    return fates;
   }
   if (array == "Outcome")
   {

@@ -143,6 +143,11 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     const Vec3& p1 = rock.vertices()[ends[1]];
     // Not before the edge has come to both planes of the ridge …
     double least = 0.0;
+    const auto until = [&](const Vec3& normal, double level) // the nearer end, by bounds
+    {
+      return std::min(timeToCover(normal.dot(p) - level, rate(normal, p), gravity + turning),
+        timeToCover(normal.dot(p1) - level, rate(normal, p1), gravity + turning));
+    };
     for (int i : g.triangles)
     {
       const SurfacePatch::Triangle& t = patch.triangles[i];
@@ -150,9 +155,7 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
       if (a > 0.0 && b > 0.0)
       {
         pair.over = std::max(pair.over, travelled + std::min(a, b));
-        least = std::max(least,
-          std::min(timeToCover(a, rate(t.normal, p), gravity + turning),
-            timeToCover(b, rate(t.normal, p1), gravity + turning)));
+        least = std::max(least, until(t.normal, t.offset));
       }
     }
     if (least >= time)
@@ -197,10 +200,7 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     if (isOutside(rock, pair.rock, patch, g, apart))
     {
       const Vec3 n = apart.normalized();
-      const double highest = std::max(n.dot(q), n.dot(q + w));
-      least = std::max(least,
-        std::min(timeToCover(n.dot(p) - highest, rate(n, p), gravity + turning),
-          timeToCover(n.dot(p1) - highest, rate(n, p1), gravity + turning)));
+      least = std::max(least, until(n, std::max(n.dot(q), n.dot(q + w))));
     }
     time = std::min(time, least);
   }

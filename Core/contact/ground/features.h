@@ -56,7 +56,8 @@ bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, i
 /// Puts the ridge's line into an edge–edge contact, for the step solver.
 void setRidge(const SurfacePatch& patch, int ridge, Contact& contact);
 
-/// From the segment q + t w to the segment p + s u where they are nearest, s and t from 0 to 1 (m).
+/// The way from the segment q + t w to the segment p + s u where they are nearest, s and t from 0 to 1
+/// (m).
 Vec3 betweenSegments(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w);
 
 /// Closest points of two lines p + s u, q + t w; false if they are nearly parallel (sine < 1e-4).

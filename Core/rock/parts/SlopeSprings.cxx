@@ -61,7 +61,7 @@ void SlopeSprings::join(RockBody& body)
     }
     const Vec3 y = body.placed.rotation().transpose() * (c.point - body.state.position);
     const Vec3 n = body.placed.rotation().transpose() * c.normal;
-    const Stiffness softer = this->stiffnessAt(body, n, y);
+    const Stiffness softer = this->stiffnessAt(body, n, n.unitOrthogonal(), y);
     const double normal = softer.normal / c.stiffness, shear = softer.shear / c.shearStiffness;
     if (normal >= 1.0)
     {
@@ -205,13 +205,13 @@ double SlopeSprings::dampingRatioFor(int ground, double restitution)
 }
 
 SlopeSprings::Stiffness SlopeSprings::stiffnessAt(
-  const RockBody& body, const Vec3& n, const Vec3& y) const
+  const RockBody& body, const Vec3& n, const Vec3& t, const Vec3& y) const
 {
   const double shear = penalty_ * parameters_.shearRatio;
   const bool strains = body.stiff && !parameters_.rigid;
   const auto with = [&](double penalty, const Vec3& along)
   { return penalty / (1.0 + (strains ? penalty * body.block.compliance(along, y) : 0.0)); };
-  return { with(penalty_, n), with(shear, n.unitOrthogonal()) };
+  return { with(penalty_, n), with(shear, t) };
 }
 
 void SlopeSprings::give(Contact& c, const RockBody& body, double restitution)
@@ -220,7 +220,7 @@ void SlopeSprings::give(Contact& c, const RockBody& body, double restitution)
   const Vec3 y = body.placed.rotation().transpose() * lever;
   const Vec3 n = body.placed.rotation().transpose() * c.normal;
   const Vec3 t = n.unitOrthogonal();
-  const Stiffness stiffness = this->stiffnessAt(body, n, y);
+  const Stiffness stiffness = this->stiffnessAt(body, n, t, y);
   c.stiffness = stiffness.normal;
   c.shearStiffness = stiffness.shear;
   const double speed = body.state.velocity.norm();

@@ -24,9 +24,9 @@ public:
   void beginContact(const RockBody& body) { penalty_ = this->stoppingPenalty(body); }
   /// A rock that slides into something may be faster than when its contact began.
   void stiffen(const RockBody& body);
-  /// From now on the rock is stepped by itself.
+  /// The rock is stepped by itself from now on.
   void part(const RockBody& body);
-  /// From now on with others: sweeps over an island follow no springs that are stiffer than those
+  /// The rock is stepped with others from now on: sweeps over an island follow no springs that are stiffer than those
   /// between rocks. Contacts go on with softer ones that hold the same energy.
   void join(RockBody& body);
   /// Springs and dashpot of a contact that is about to close. `restitution`: of the ground there.
@@ -52,8 +52,9 @@ private:
   };
   /// Stiffness that stops it in time, N/m. `held`: energy that springs hold already, J.
   double stoppingPenalty(const RockBody& body, double held = 0.0) const;
-  /// N/m, with the block behind the contact. `n`, `y`: in the block's frame.
-  Stiffness stiffnessAt(const RockBody& body, const Vec3& n, const Vec3& y) const;
+  /// N/m, with the block behind the contact. Its normal `n`, a tangent `t` and its place `y`: in the
+  /// block's frame.
+  Stiffness stiffnessAt(const RockBody& body, const Vec3& n, const Vec3& t, const Vec3& y) const;
   double dampingRatioFor(int ground, double restitution); ///< ζ of a class of ground, now.
 
   const Surface& surface_;

@@ -9,36 +9,61 @@
 using namespace rockfall;
 using namespace rockfall::testing;
 
+namespace
+{
+
+/// A cube that comes down on a level floor, in a mass fall.
+struct Landing
+{
+  Terrain ground = floorSlope();
+  Surface surface{ ground, 1, 0 };
+  Block block;
+  SimulationParameters parameters;
+  SlopeSprings springs{ surface, parameters, block };
+  RockBody body{ block };
+
+  /// Volume, m³; Young's modulus, Pa; speed, m/s; pₙ, N/m.
+  Landing(double volume, double young, double speed, double penalty = 0.0)
+    : block(makeShape(Shape::Cube, volume), 2500.0, young, 0.2)
+  {
+    parameters.rockRockContact = true;
+    parameters.normalPenalty = penalty;
+    springs.part(body);
+    body.state.position = Vec3(50.0, 50.0, 0.5 * std::cbrt(volume));
+    body.state.velocity.z() = -speed;
+    body.placed.place(block, body.state);
+    springs.beginContact(body);
+  }
+  Contact contactAt(const Vec3& point)
+  {
+    Contact c;
+    c.point = point;
+    c.cfe = ground.cfeAt(point.x(), point.y());
+    springs.give(c, body, 0.6);
+    c.state = ContactState::Locked;
+    return c;
+  }
+};
+
+} // namespace
+
 TEST(Joining, KeepsTheEnergyAndTheReboundOfAnImpact)
 {
-  const Terrain ground = floorSlope();
-  const Surface surface(ground, 1, 0);
-  const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e10, 0.2);
-  SimulationParameters p;
-  p.rockRockContact = true;
-  SlopeSprings springs(surface, p, block);
-  RockBody body(block);
+  Landing landing(1.0, 1e10, 1.0);
+  SlopeSprings& springs = landing.springs;
+  RockBody& body = landing.body;
   body.stiff = true;
-  body.state.position = Vec3(50.0, 50.0, 0.5);
-  body.state.velocity = Vec3(0.0, 0.0, -1.0);
-  body.placed.place(block, body.state);
-  springs.beginContact(body);
   for (const double turn : { 0.0, 0.4 }) // about x, rad
   {
     body.state.orientation = Quat(Eigen::AngleAxisd(turn, Vec3::UnitX()));
-    body.placed.place(block, body.state);
-    Contact c;
-    c.normal = Vec3::UnitZ();
-    c.point = Vec3(50.4, 50.3, 0.0);
-    c.cfe = ground.cfeAt(50.0, 50.0);
+    body.placed.place(landing.block, body.state);
     springs.part(body);
-    springs.give(c, body, 0.6);
-    c.state = ContactState::Locked;
+    Contact c = landing.contactAt(Vec3(50.4, 50.3, 0.0));
     c.distance = -2e-5;
     c.offset = 1e-5;
     c.slip = Vec3(1e-5, 0.0, 0.0);
     body.contacts = { c };
-    ASSERT_NEAR(springs.leastPenalty(), 1e8 * block.mass(), 1.0);
+    ASSERT_NEAR(springs.leastPenalty(), 1e8 * landing.block.mass(), 1.0);
 
     springs.join(body);
     const Contact& softer = body.contacts[0];
@@ -61,45 +86,25 @@ TEST(Joining, KeepsTheEnergyAndTheReboundOfAnImpact)
 
 TEST(Joining, StopsAFastRockWithinATenthOfItsRadius)
 {
-  const Terrain ground = floorSlope();
-  const Surface surface(ground, 1, 0);
   for (const double volume : { 0.1, 1.0, 100.0 })
   {
-    const Block block(makeShape(Shape::Cube, volume), 2700.0, 5e10, 0.2);
-    SimulationParameters p;
-    p.rockRockContact = true;
-    SlopeSprings springs(surface, p, block);
-    RockBody body(block);
-    body.state.position = Vec3(50.0, 50.0, 0.5 * std::cbrt(volume));
-    body.state.velocity.z() = -50.0;
-    body.placed.place(block, body.state);
-    springs.beginContact(body);
-    Contact c;
-    c.point = Vec3(50.0, 50.0, 0.0);
-    c.cfe = ground.cfeAt(50.0, 50.0);
-    springs.give(c, body, 0.6);
+    Landing landing(volume, 5e10, 50.0);
+    RockBody& body = landing.body;
     // Where it turns the spring holds all of its energy.
-    c.state = ContactState::Locked;
-    c.distance = -50.0 * std::sqrt(block.mass() / c.stiffness);
+    Contact c = landing.contactAt(Vec3(50.0, 50.0, 0.0));
+    c.distance = body.state.velocity.z() * std::sqrt(landing.block.mass() / c.stiffness);
     body.contacts = { c };
     body.state.velocity.setZero();
-    springs.join(body);
-    EXPECT_LE(-body.contacts[0].gap(), (0.1 + 1e-9) * block.radius()) << volume;
+    landing.springs.join(body);
+    EXPECT_LE(-body.contacts[0].gap(), (0.1 + 1e-9) * landing.block.radius()) << volume;
   }
 }
 
 TEST(Joining, SpringsOfTheUserStay)
 {
-  const Terrain ground = floorSlope();
-  const Surface surface(ground, 1, 0);
-  const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e10, 0.2);
-  SimulationParameters p;
-  p.rockRockContact = true;
-  p.normalPenalty = 1e10;
-  SlopeSprings springs(surface, p, block);
-  RockBody body(block);
-  springs.join(body);
-  EXPECT_EQ(springs.leastPenalty(), 1e10);
-  springs.part(body);
-  EXPECT_EQ(springs.leastPenalty(), 1e10);
+  Landing landing(1.0, 1e10, 0.0, 1e10);
+  landing.springs.join(landing.body);
+  EXPECT_EQ(landing.springs.leastPenalty(), 1e10);
+  landing.springs.part(landing.body);
+  EXPECT_EQ(landing.springs.leastPenalty(), 1e10);
 }
