@@ -73,12 +73,17 @@ RockFrequencies frequenciesOf(vtkPolyData* trajectories)
       std::to_string(frequency->GetNumberOfComponents()) + " components, it must have 1");
   }
   RockFrequencies result;
+  vtkDataArray* piece =
+    cells->GetArray("Piece"); // a rock is released once, whatever it breaks into
   // Polydata's cells begin with its vertices.
   const vtkIdType first = trajectories->GetNumberOfVerts();
-  for (vtkIdType line = 0; line < trajectories->GetNumberOfLines(); ++line)
+  for (vtkIdType line = first; line < first + trajectories->GetNumberOfLines(); ++line)
   {
-    result.add(int(rock->GetTuple1(first + line)), std::int64_t(block->GetTuple1(first + line)),
-      frequency->GetTuple1(first + line));
+    if (!piece || piece->GetTuple1(line) == 0.0)
+    {
+      result.add(int(rock->GetTuple1(line)), std::int64_t(block->GetTuple1(line)),
+        frequency->GetTuple1(line));
+    }
   }
   return result;
 }

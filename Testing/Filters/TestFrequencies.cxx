@@ -1,6 +1,7 @@
 // Frequencies of sources: from a layer to rocks, trajectories and their map.
 
 #include "helpers.h"
+#include "trajectories.h"
 
 #include "vtkCell.h"
 #include "vtkCellData.h"
@@ -85,6 +86,36 @@ TEST_F(TestFrequencies, AreSharedOutOverTheRocksOfASource)
   EXPECT_EQ(value(shown, "Frequency", 0), 0.125);
   EXPECT_FLOAT_EQ(
     float(value(map->GetOutput()->GetCellData(), "AnnualFrequency")), 0.125F + 0.2F + 0.375F);
+}
+
+/// A rock that breaks into pieces is released once.
+TEST_F(TestFrequencies, PiecesAreNoReleases)
+{
+  HandMadeTrajectories paths;
+  const auto add = [&](const char* name, const std::vector<double>& values)
+  {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    for (const double value : values)
+    {
+      array->InsertNextValue(value);
+    }
+    paths.Data->GetCellData()->AddArray(array);
+  };
+  for (const int iteration : { 0, 1 })
+  {
+    for (int piece = 0; piece < 3; ++piece)
+    {
+      paths.AddLevel(iteration, 0, { 500000.0 + 10 * std::min(piece, 1), 5100000, 50 }, 10.0, 5.0);
+    }
+  }
+  add("Piece", { 0, 1, 2, 0, 1, 2 });
+  add("Frequency", { 0.25, 0.25, 0.25, 0.25, 0.25, 0.25 });
+  vtkNew<vtkRockfallHazardMap> map;
+  map->SetInputDataObject(0, paths.Data);
+  map->SetCellSize(1000.0);
+  map->Update();
+  EXPECT_FLOAT_EQ(float(value(map->GetOutput()->GetCellData(), "AnnualFrequency")), 0.25F);
 }
 
 /// Typed, with a row that has its own.
