@@ -106,6 +106,20 @@ ReleasedRocks releasedIn(vtkPolyData* trajectories)
   return rocks;
 }
 
+void addPath(const RockPath& path, Loss loss, ReleasedRocks& rocks)
+{
+  const double end = path.points.empty() ? 0.0 : path.points.back().time;
+  const CollectedRock added{ path.iteration, path.rock, path.blockId, loss, end };
+  if (path.piece == 0)
+  {
+    rocks.push_back(added);
+  }
+  else if (!rocks.empty() && keyOf(rocks.back()) == keyOf(added) && rocks.back().loss == Loss::None)
+  {
+    rocks.back() = added;
+  }
+}
+
 void checkReleased(ReleasedRocks& rocks)
 {
   std::sort(rocks.begin(), rocks.end(),

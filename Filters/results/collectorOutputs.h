@@ -43,6 +43,9 @@ using ReleasedRocks = std::vector<CollectedRock>;
 /// Those of trajectories, by the cell arrays Iteration, RockId and BlockId; none without them.
 ReleasedRocks releasedIn(vtkPolyData* trajectories);
 
+/// Adds a rock, or what became of a piece of the last one: a rock is lost if one of its pieces is.
+void addPath(const RockPath& path, Loss loss, ReleasedRocks& rocks);
+
 /// Sorts them. Throws DataError if one is there twice.
 void checkReleased(ReleasedRocks& rocks);
 /// Whether the rock of a crossing is among them, as checkReleased has sorted them.

@@ -257,12 +257,8 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
   rockfall::filters::forEachPath(trajectories, origin,
     [&](const rockfall::RockPath& path, std::int64_t cell)
     {
-      if (path.piece == 0)
-      {
-        collected.released.push_back({ path.iteration, path.rock, path.blockId,
-          rockfall::filters::lossOf(fate->GetTuple1(cell)),
-          path.points.empty() ? 0.0 : path.points.back().time });
-      }
+      rockfall::filters::addPath(
+        path, rockfall::filters::lossOf(fate->GetTuple1(cell)), collected.released);
       for (std::size_t k = 0; k < lines.size(); ++k)
       {
         found.clear();

@@ -15,9 +15,13 @@
 #include "vtkTable.h"
 #include "vtkTrajectoryCollector.h"
 
+#include "rock/results.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+
+using rockfall::Fate;
 
 namespace
 {
@@ -308,4 +312,36 @@ TEST_F(TestLostRocks, WideRocksTouchTheCellsUnderThem)
   EXPECT_EQ(rows(true, 0.5), 11); // y − 2.2 … 2.8
   EXPECT_EQ(rows(true, 2.0), 4);
   EXPECT_EQ(rows(true, 5.0), 1); // not wider than a cell
+}
+
+/// A rock that broke is lost where a piece of it is, once, before lines that none of it passed.
+TEST_F(TestLostRocks, PiecesOfARockThatAreLost)
+{
+  HandMadeTrajectories paths;
+  vtkNew<vtkIntArray> pieces;
+  pieces->SetName("Piece");
+  const auto add = [&](int rock, int piece, double from, Fate fate)
+  {
+    paths.AddLevel(0, rock, { 500000.0 + from, 5100000, 50 }, 10.0, 5.0, 2.0, int(fate));
+    pieces->InsertNextValue(piece);
+  };
+  add(0, 0, 0.0, Fate::Broken); // one piece moves, one lies
+  add(0, 1, 10.0, Fate::Rested);
+  add(0, 2, 10.0, Fate::Moving);
+  add(0, 3, 10.0, Fate::Moving);
+  add(1, 0, 0.0, Fate::Broken); // one is behind the line
+  add(1, 1, 25.0, Fate::LeftDomain);
+  add(2, 0, 0.0, Fate::Broken); // none is lost
+  add(2, 1, 10.0, Fate::Rested);
+  add(3, 0, 0.0, Fate::LeftDomain);
+  paths.Data->GetCellData()->AddArray(pieces);
+  vtkNew<vtkTrajectoryCollector> collector;
+  collector->AddPoint(500030, 5099990, 0);
+  collector->AddPoint(500030, 5100010, 0);
+  collector->SetInputDataObject(0, paths.Data);
+  collector->Update();
+  auto* lines = vtkTable::SafeDownCast(collector->GetOutputDataObject(1));
+  EXPECT_EQ(lines->GetValueByName(0, "MovingBefore").ToInt(), 1);
+  EXPECT_EQ(lines->GetValueByName(0, "OverEdgeBefore").ToInt(), 1);
+  EXPECT_EQ(lines->GetValueByName(0, "Rocks").ToInt(), 1);
 }
