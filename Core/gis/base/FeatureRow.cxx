@@ -252,7 +252,10 @@ const OGRGeometry* FeatureRow::geometry() const
   const OGRGeometry* geometry = feature_.GetGeometryRef();
   if (geometry && geometry->hasCurveGeometry())
   {
-    straight_.reset(geometry->getLinearGeometry());
+    if (!straight_) // who asked before still has it
+    {
+      straight_.reset(geometry->getLinearGeometry());
+    }
     geometry = straight_.get();
   }
   return geometry && !geometry->IsEmpty() ? geometry : nullptr;

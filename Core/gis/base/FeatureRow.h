@@ -62,7 +62,8 @@ public:
   std::optional<double> numberAt(int column) const;
   std::optional<std::string> textAt(int column) const;
 
-  /// The feature's geometry, curves as lines; null if there is none.
+  /// The feature's geometry, curves as lines, always the same one: it lives as long as the row and
+  /// its feature. Null if there is none.
   const OGRGeometry* geometry() const;
 
 private:
@@ -75,7 +76,7 @@ private:
   const Columns& columns_;
   const OGRFeature& feature_;
   std::int64_t row_;
-  mutable std::unique_ptr<OGRGeometry> straight_; ///< Of a curved geometry.
+  mutable std::unique_ptr<OGRGeometry> straight_; ///< Of a curved geometry, once asked for.
 };
 
 } // namespace rockfall::gis

@@ -1,6 +1,8 @@
 // Files with several layers: which one is read, that a note says so, and that more than one which
-// would do is an error that lists them. Lines of every kind, and drawings with what is no contour.
+// would do is an error that lists them. Lines and polygons of every kind, and drawings with what is
+// no contour.
 #include "base/errors.h"
+#include "geometry/planeSampling.h"
 #include "gis/layers/layerWriter.h"
 #include "gis/layers/lineLayer.h"
 #include "gis/layers/sources.h"
@@ -8,6 +10,7 @@
 #include "gis/raster/contours.h"
 #include "gis/raster/ground.h"
 #include "gisFiles.h"
+#include "run/releasePlaces.h"
 #include "slopes.h"
 #include "terrain/structures.h"
 
@@ -289,6 +292,49 @@ TEST(Lines, AnArcIsFollowed)
     EXPECT_TRUE(p.y() < 0.0 || std::abs((p - Eigen::Vector2d(50, 0)).norm() - 50.0) < 1e-6);
   }
   EXPECT_GT(top, 49.9);
+}
+
+TEST(Polygons, CurvesAndSurfacesAreAsTheirStraightForms)
+{
+  const auto read = [](const std::string& wkt)
+  {
+    const std::string file = writeFile("areas.csv", "WKT,amount\n\"" + wkt + "\",20\n");
+    return readSourceLayer(file, onTerrain()).rows.at(0);
+  };
+  const Terrain terrain = makePlane(21, 100.0, 0.0, 0.0, material(0.5, 20.0));
+  const auto expectSame = [&](const SourceRow& row, const SourceRow& straight)
+  {
+    EXPECT_EQ(row.geometry, SourceGeometry::Polygon);
+    ASSERT_EQ(row.parts.size(), straight.parts.size());
+    EXPECT_EQ(PolygonSampler(row.parts).area(), PolygonSampler(straight.parts).area());
+    const auto places = releasePlaces({ &row, 1 }, &terrain, {}, "areas.csv");
+    const auto others = releasePlaces({ &straight, 1 }, &terrain, {}, "areas.csv");
+    ASSERT_EQ(places.size(), 20u);
+    for (std::size_t k = 0; k < places.size(); ++k)
+    {
+      EXPECT_EQ(places[k].position.head<2>(), others[k].position.head<2>());
+    }
+  };
+  const std::string square = "((20 20,40 20,40 40,20 40,20 20),(25 25,25 30,30 30,30 25,25 25))";
+  const std::string wedge = "((60 60,80 60,70 80,60 60))";
+  expectSame(read("MULTISURFACE(" + square + ")"), read("POLYGON" + square));
+  expectSame(read("MULTISURFACE(" + square + "," + wedge + ")"),
+    read("MULTIPOLYGON(" + square + "," + wedge + ")"));
+
+  // A circle, which gets a corner every 4 degrees.
+  const std::string circle = "CURVEPOLYGON(CIRCULARSTRING(40 50,50 60,60 50,50 40,40 50))";
+  const SourceRow round = read(circle);
+  ASSERT_EQ(round.parts.size(), 1u);
+  std::string corners;
+  for (const Vec3& corner : round.parts[0])
+  {
+    EXPECT_NEAR((corner - Vec3(50, 50, 0)).head<2>().norm(), 10.0, 1e-9);
+    corners += (corners.empty() ? "" : ",") + exactText(corner.x()) + " " + exactText(corner.y());
+  }
+  EXPECT_NEAR(PolygonSampler(round.parts).area(), 45.0 * 100.0 * std::sin(radians(4.0)), 1e-6);
+  expectSame(round, read("POLYGON((" + corners + "))"));
+  expectSame(read("MULTISURFACE(" + circle + "," + wedge + ")"),
+    read("MULTIPOLYGON(((" + corners + "))," + wedge + ")"));
 }
 
 TEST(Lines, TracksAndRoutesOfAGpxFile)
