@@ -114,6 +114,17 @@ void PolygonSampler::addSlab(std::vector<const Side*>& across, double y0, double
   }
 }
 
+std::vector<std::array<Eigen::Vector2d, 4>> PolygonSampler::pieces() const
+{
+  std::vector<std::array<Eigen::Vector2d, 4>> all;
+  for (const Trapezoid& t : trapezoids_)
+  {
+    all.push_back({ { { t.left0, t.y0 }, { std::max(t.left0, t.right0), t.y0 },
+      { std::max(t.left1, t.right1), t.y1 }, { t.left1, t.y1 } } });
+  }
+  return all;
+}
+
 Eigen::Vector2d PolygonSampler::at(double u, double v, double w) const
 {
   const Trapezoid& t = trapezoids_[pick(cumulated_, u).first];

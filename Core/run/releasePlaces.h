@@ -81,6 +81,10 @@ private:
   std::unique_ptr<Samplers> samplers_;
 };
 
+/// Area in plan of a polygon, of which only what has a CFE under it counts, if there is a terrain:
+/// where the rocks of an intensity are. m².
+double areaOnTerrain(const SourceRow& polygon, const Terrain* terrain);
+
 /// Area in plan of all CFEs that are at least `threshold` (rad) steep, m².
 double steepArea(const Terrain& terrain, double threshold);
 

@@ -5,7 +5,6 @@
 #include "base/hectare.h"
 #include "base/require.h"
 #include "base/text/numberText.h"
-#include "geometry/planeSampling.h"
 #include "gis/base/externalReferences.h"
 #include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
@@ -243,7 +242,7 @@ double vtkRockBlockSource::FrequencyOf(const Sources& sources, std::size_t numbe
     }
     return *row.frequencyPerHectare / rockfall::kHectare *
       (steep ? rockfall::steepArea(*sources.terrain, rockfall::radians(this->SlopeThreshold))
-             : rockfall::PolygonSampler(row.parts).area());
+             : rockfall::areaOnTerrain(row, sources.ground()));
   }
   if (row.frequencyA)
   {

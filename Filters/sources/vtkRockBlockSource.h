@@ -267,7 +267,8 @@ public:
 
   ///@{
   /**
-   * The same of areas and steep terrain, 1/a per hectare in plan.
+   * The same of areas, as far as they lie on the terrain, and of steep terrain, 1/a per hectare in
+   * plan.
    */
   vtkSetMacro(FrequencyPerHectare, double);
   vtkGetMacro(FrequencyPerHectare, double);

@@ -138,6 +138,46 @@ TEST_F(TestFrequencies, PropertiesAreOfSourcesWithoutTheirOwn)
   EXPECT_EQ(at(5), 0.125);
 }
 
+/// By amount or by intensity, whether the rest is outside of the grid or on its nodata.
+TEST_F(TestFrequencies, OfPolygonsByTheirAreaOnTheTerrain)
+{
+  // Cells of 10 m from (5, 5) to (95, 45); the node at (75, 25) is nodata.
+  std::string grid = "ncols 10\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 10\n"
+                     "NODATA_value -9999\n";
+  for (int row = 0; row < 5; ++row)
+  {
+    for (int column = 0; column < 10; ++column)
+    {
+      grid += std::to_string(row == 2 && column == 7 ? -9999 : 200 - 10 * column) + " ";
+    }
+    grid += "\n";
+  }
+  this->Slope->SetFileName(this->WriteFile("dem.asc", grid).c_str());
+  this->Read("WKT,source_id,amount,intensity,volume,freq_ha\n"
+             "\"POLYGON((-35 5,45 5,45 30,-35 30,-35 5))\",1,7,,0.01,2\n"
+             "\"POLYGON((-35 5,45 5,45 30,-35 30,-35 5))\",2,,0.02,0.01,2\n"
+             "\"POLYGON((5 5,45 5,45 30,5 30,5 5))\",3,7,,0.01,2\n"
+             "\"POLYGON((55 15,85 15,85 35,55 35,55 15))\",4,3,,0.01,2\n");
+  std::map<int, double> found;
+  std::set<double> blocks;
+  vtkCellData* cells = this->Rocks->GetOutput()->GetCellData();
+  for (vtkIdType k = 0; k < cells->GetNumberOfTuples(); ++k)
+  {
+    if (blocks.insert(value(cells, "BlockId", k)).second)
+    {
+      found[int(value(cells, "SourceId", k))] += value(cells, "Frequency", k);
+    }
+  }
+  const vtkIdType triangles =
+    vtkPolyData::SafeDownCast(this->Slope->GetOutputDataObject(0))->GetNumberOfCells();
+  const double gap = 90.0 * 40.0 - 50.0 * double(triangles);
+  ASSERT_GE(gap, 200.0);
+  EXPECT_NEAR(found[1], 2.0 * 0.1, 1e-12);
+  EXPECT_NEAR(found[2], 2.0 * 0.1, 1e-12);
+  EXPECT_NEAR(found[3], 2.0 * 0.1, 1e-12);
+  EXPECT_NEAR(found[4], 2.0 * (600.0 - gap) / 1e4, 1e-12);
+}
+
 TEST_F(TestFrequencies, OfSteepTerrainByItsArea)
 {
   constexpr double threshold = 25.0; // degrees

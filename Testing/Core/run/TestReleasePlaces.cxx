@@ -234,6 +234,65 @@ TEST(ReleasePlaces, whatReachesBeyondTheTerrain)
   }
 }
 
+TEST(ReleasePlaces, areaOfAPolygonOnTheTerrain)
+{
+  const Terrain whole = ground();
+  const auto area = [](const Rings& rings, const Terrain* terrain)
+  { return areaOnTerrain(source(SourceGeometry::Polygon, rings), terrain); };
+  EXPECT_NEAR(area(holedL(1020, 2020), &whole), 11.75, 1e-9);
+  // A square on its corner, over the terrain's corner, and one that is nowhere on it.
+  const Rings corner = { { at(990, 2000), at(1000, 1990), at(1010, 2000), at(1000, 2010) } };
+  EXPECT_NEAR(area(corner, &whole), 50.0, 1e-9);
+  EXPECT_NEAR(area(corner, nullptr), 200.0, 1e-9);
+  EXPECT_EQ(area(holedL(900, 2000), &whole), 0.0);
+
+  // Nodata at a node in the middle, and all along the east.
+  std::vector<double> heights(whole.heights().begin(), whole.heights().end());
+  for (int row = 0; row < 41; ++row)
+  {
+    heights[std::size_t(row) * 41 + 40] = NAN;
+  }
+  heights[20 * 41 + 20] = NAN;
+  const Terrain gaps(whole.geometry(), heights);
+  std::int64_t cfes = 0;
+  for (std::int64_t cfe = 1; cfe <= gaps.cfeCapacity(); ++cfe)
+  {
+    cfes += gaps.hasCfe(cfe);
+  }
+  const Rings all = { { at(900, 1900), at(1300, 1900), at(1300, 2300), at(900, 2300) } };
+  EXPECT_NEAR(area(all, &gaps), 12.5 * double(cfes), 1e-7);
+  // Over the gap in the middle, with a hole and sides across the cells, by a count of places.
+  const Rings over = { { at(1091, 2096), at(1107, 2089), at(1109, 2108), at(1094, 2103) },
+    { at(1097, 2098), at(1101, 2097), at(1099, 2101) } };
+  const double step = 0.01;
+  const double x0 = 1091.0, y0 = 2089.0;
+  double counted = 0.0;
+  for (double y = y0 + 0.5 * step; y < y0 + 19.0; y += step)
+  {
+    for (double x = x0 + 0.5 * step; x < x0 + 18.0; x += step)
+    {
+      bool inside = false;
+      for (const std::vector<Vec3>& ring : over)
+      {
+        for (std::size_t k = 0; k < ring.size(); ++k)
+        {
+          const Vec3 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+          inside ^= (a.y() > y) != (b.y() > y) &&
+            x < a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+        }
+      }
+      counted += inside && gaps.cfeAt(x - 1000.0, y - 2000.0) != 0 ? step * step : 0.0;
+    }
+  }
+  EXPECT_GT(area(over, nullptr), counted + 30.0);
+  EXPECT_NEAR(area(over, &gaps), counted, 0.05);
+  // Where rocks of an intensity are.
+  SourceRow row = source(SourceGeometry::Polygon, over);
+  row.intensity = 50.0;
+  const double rocks = double(releasePlaces({ &row, 1 }, &gaps, {}, "layer.gpkg").size());
+  EXPECT_NEAR(rocks, 50.0 * counted, 5.0 * std::sqrt(50.0 * counted)); // five standard deviations
+}
+
 TEST(ReleasePlaces, steepCells)
 {
   const Terrain terrain = ground();
