@@ -340,12 +340,14 @@ def is_enough(until, stem):
 def tell_precision(chosen, until):
     """In the log and the manifest."""
     def write():
-        if not until:
-            return
-        known = all(one["known"] for one in until.state())
-        say(("Enough" if known else "Not enough") + f" rocks, {until.total}: {until.text()}")
         manifest = schema.load(manifest_of(chosen))
-        manifest["until"] = {**until.until, "known": known, "lines": until.state()}
+        if not until and "until" not in manifest:
+            return
+        manifest.pop("until", None)  # that an earlier start had
+        if until:
+            known = all(one["known"] for one in until.state())
+            say(("Enough" if known else "Not enough") + f" rocks, {until.total}: {until.text()}")
+            manifest["until"] = {**until.until, "known": known, "lines": until.state()}
         write_text(manifest_of(chosen), json.dumps(manifest, indent=1) + "\n")
 
     from_first_rank(write)

@@ -81,6 +81,10 @@ assert code == 0 and "Not enough rocks, 60: Share at" in said, said
 assert json.loads(files_of("enough-share")["results.json"])["iterations"] == 12
 code, said = run("enough-share", until={"quantity": "KineticEnergy95", "within": 0.5})
 assert code == 0 and '"far": not known yet' in said, said
+# Left out, it is not in the manifest either.
+code, said = run("enough-share")
+assert code == 0 and "ough rocks" not in said, said
+assert "until" not in json.loads(files_of("enough-share")["manifest.json"])
 
 # Rocks that still move may reach it yet, or go farther: no number of them is enough.
 short = {"simulation": {**study["simulation"], "EndTime": 0.5}}
