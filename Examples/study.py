@@ -181,8 +181,14 @@ class Pipeline:
             if proxy:
                 proxy.PrintNotes = 0  # of each chunk: combine() tells them of all
 
+    def ends(self):
+        """Of the names of a chunk's files."""
+        return [end for end, there in (
+            (".npz", True), (".vtp", self.study["trajectories"]), (".passages", self.passages),
+            ("-crossings.vtp", self.crossings), ("-structures.npz", self.standing)) if there]
+
     def write_chunk(self, stem, first, iterations):
-        """A chunk is there when its table is, so that comes last."""
+        """Its table comes last: a chunk that was not written to its end has none."""
         from_first_rank(lambda: os.path.exists(stem + ".npz") and os.remove(stem + ".npz"))
         self.simulation.FirstIteration = first
         self.simulation.Iterations = iterations
@@ -255,7 +261,7 @@ def refuse_other(chosen, names):
                "Take another folder, or remove this one.")
 
 
-def claim(chosen, study, in_force):
+def claim(chosen, study, in_force, ends):
     """The folder is this study's from here on: its inputs are good. Gives how many iterations each
     chunk's files have."""
     manifest = manifest_of(chosen)
@@ -264,7 +270,7 @@ def claim(chosen, study, in_force):
     there = schema.load(manifest) if os.path.exists(manifest) else {"identity": this, "begun": begun}
     refuse_other(chosen, differences(there["identity"], this))
     size, wanted = study["chunk"], study["iterations"]
-    done = [chunk_iterations(stem_of(chosen, k), k * size) for k in range(-(-wanted // size))]
+    done = [chunk_iterations(stem_of(chosen, k), k * size, ends) for k in range(-(-wanted // size))]
     beyond = stem_of(chosen, len(done)) + ".npz"
     if os.path.exists(beyond) or done[-1] > wanted - size * (len(done) - 1):
         refuse(f"{chosen.folder} has more than {wanted} iterations already. Take another folder.")
@@ -275,7 +281,7 @@ def claim(chosen, study, in_force):
             "study": os.path.abspath(chosen.study), "iterations": wanted, "chunk": size,
             "files": inputs.names(), "values": in_force, "identity": this}, indent=1) + "\n")
     if done != expected(study) and os.path.exists(os.path.join(chosen.folder, RESULTS)):
-        os.remove(os.path.join(chosen.folder, RESULTS))  # of fewer iterations
+        os.remove(os.path.join(chosen.folder, RESULTS))  # of fewer iterations, or of files that are gone
     return done
 
 
@@ -373,7 +379,7 @@ def main():
     pipeline.check(chosen.folder)
     from_first_rank(lambda: inputs.read())
     in_force = pipeline.values()
-    done = from_first_rank(lambda: claim(chosen, study, in_force))
+    done = from_first_rank(lambda: claim(chosen, study, in_force, pipeline.ends()))
     wanted = expected(study)
     whole = sum(one == kept for one, kept in zip(wanted, done))
     if whole:

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import zipfile
+import zlib
 
 import numpy as np
 from paraview import servermanager
@@ -45,19 +46,44 @@ def columns_of(fields):
     return columns
 
 
-def chunk_iterations(stem, first):
-    """How many iterations a chunk has whose files are there, from `first` on; 0 if they are not."""
-    path = stem + ".npz"
-    if not os.path.exists(path):
+def refuse_damaged(path, why=""):
+    """A file of a chunk, without which the study is not finished."""
+    results = os.path.join(os.path.dirname(path), RESULTS)
+    if os.path.exists(results):
+        os.remove(results)
+    refuse(f"{path} {why}is damaged. Remove it, and it is made again.")
+
+
+def check_whole(path):
+    """Whether a chunk's file was cut; their reader tells of passages."""
+    good = True
+    if path.endswith(".npz"):
+        try:
+            with zipfile.ZipFile(path) as archive:
+                good = archive.testzip() is None
+        except (ValueError, EOFError, zipfile.BadZipFile, zlib.error):
+            good = False
+    elif path.endswith(".vtp"):
+        good = wholefile.ends_as_xml(path)
+    if not good:
+        refuse_damaged(path)
+
+
+def chunk_iterations(stem, first, ends):
+    """How many iterations a chunk has, from `first` on, whose files of these ends are all there; 0 if one is not."""
+    if not all(os.path.exists(stem + end) for end in ends):
         return 0
+    for end in ends:
+        check_whole(stem + end)
+    path = stem + ".npz"
     try:
         with np.load(path) as chunk:
             count = int(chunk["Iterations"])
             if np.any((chunk["Iteration"] < first) | (chunk["Iteration"] >= first + count)):
-                refuse(f"{path} has iterations of another chunk and is damaged. Remove it, and it is made again.")
+                refuse_damaged(path, "has iterations of another chunk and ")
             return count
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        refuse(f"{path} is damaged. Remove it, and it is made again.")
+    except (ValueError, KeyError):
+        refuse_damaged(path)
 
 
 def combine_tables(folder, stems):
@@ -109,9 +135,12 @@ def notes_of_all(notes, rocks, broken=()):
 
 
 def crossings_of(stem):
-    reader = vtkXMLPolyDataReader()
+    reader, errors = vtkXMLPolyDataReader(), []
+    reader.AddObserver("ErrorEvent", lambda *_: errors.append(True))
     reader.SetFileName(stem + "-crossings.vtp")
     reader.Update()
+    if errors:  # the output is empty, as of a chunk that passed no line
+        refuse_damaged(stem + "-crossings.vtp")
     return reader.GetOutput()
 
 
@@ -169,6 +198,13 @@ def combine_crossings(folder, stems, merge, design):
                     [columns_of(design.GetOutputDataObject(port).GetRowData())])
 
 
+def refuse_passages(stems, error):
+    """Of the file that an error is about, if it is about one."""
+    for stem in stems:
+        if error.startswith(f"{stem}.passages:"):
+            refuse_damaged(stem + ".passages")
+
+
 def combine(study, folder, stems, iterations, structures=None):
     """The results of the whole study, from the files of its chunks alone; `structures` are what stands on the slope."""
     hashes, notes = from_first_rank(lambda: combine_tables(folder, stems))
@@ -182,6 +218,9 @@ def combine(study, folder, stems, iterations, structures=None):
     if "map" in study:
         hazard = make(HazardPassageReader, "map", {
             **schema.shared_out("map", study["map"])[1], "FileNames": [stem + ".passages" for stem in stems]})
+        UpdatePipeline(proxy=hazard)
+        error = hazard.GetClientSideObject().GetOutputDataObject(0).GetFieldData().GetAbstractArray("Error")
+        from_first_rank(lambda: error and refuse_passages(stems, error.GetValue(0)))
         writer = servermanager.writers.HazardMapWriter(Input=hazard)
         write_by(writer, os.path.join(folder, "hazard.tif"))
         cells = output(hazard).GetCellData()

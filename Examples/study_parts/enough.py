@@ -2,9 +2,8 @@
 import math
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
+from combine import crossings_of
 from schema import Bad, shown
 
 AT_LINES = ("Share", "KineticEnergy95")  # as lines.csv has them
@@ -135,13 +134,11 @@ class Enough:
                 ways = np.where(lost, np.inf, ways if breaking else chunk["RunOut"])
                 self.ways.extend(np.maximum.reduceat(ways, first) if breaking else ways)
                 return
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(stem + "-crossings.vtp")
-        reader.Update()
-        data = reader.GetOutput().GetPointData()
+        points = crossings_of(stem)
+        data = points.GetPointData()
         names = data.GetAbstractArray("LineName")
         greatest = {}
-        for k in range(reader.GetOutput().GetNumberOfPoints()):
+        for k in range(points.GetNumberOfPoints()):
             key = names.GetValue(k), *(data.GetArray(name).GetValue(k) for name in ("Iteration", "BlockId"))
             energy = data.GetArray("KineticEnergy").GetValue(k)
             greatest[key] = max(energy, greatest.get(key, energy))

@@ -141,6 +141,13 @@ def write_polydata(path, data):
     whole(path, [made])
 
 
+def ends_as_xml(path):
+    """Whether a file of write_polydata() has its end."""
+    with open(path, "rb") as file:
+        file.seek(max(0, os.path.getsize(path) - 2 * len(XML_END)))
+        return file.read().rstrip().endswith(XML_END)
+
+
 class Lock:
     """Of a folder. It goes with its process, however that ends."""
 

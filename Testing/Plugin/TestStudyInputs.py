@@ -200,6 +200,31 @@ for one, other in ((0, 1), (1, 0)):
     assert code != 0 and f"chunk-0000{other}.npz has iterations of another chunk" in said, said
     shutil.copy(f"inputs-more/chunk-0000{other}.npz", "inputs-copied")
 
+# Every file of a chunk counts: what is gone is made again, what was cut or overwritten is named, and until it is made
+# again the study is not finished.
+write_text("input-net.csv", 'WKT,height,capacity\n"LINESTRING(700050 3999990,700050 4000230)",4,1000\n')
+write_text("input-near.csv", 'WKT,name\n"LINESTRING(700028 3999990,700028 4000230)",near\n')
+netted = {"terrain": {**study["terrain"], "BarrierFile": "input-net.csv"}, "lines": {"FileName": "input-near.csv"}, "iterations": 4,
+          "until": {"quantity": "Share", "within": 0.01}}
+code, said = run("inputs-files", **netted)
+assert code == 0, said
+whole = results_of("inputs-files")
+assert len(rows_of("inputs-files/crossings.csv")) > 3
+for end in (".npz", ".vtp", ".passages", "-crossings.vtp", "-structures.npz"):
+    name = "chunk-00001" + end
+    data, path = whole[name], os.path.join("inputs-files", name)
+    middle = data[:len(data) // 2], data[:len(data) // 2] + b"#" * 60 + data[len(data) // 2 + 60:]
+    for bad in (b"", *middle[:1 if end == ".vtp" else 2]):  # nothing reads trajectories
+        with open(path, "wb") as file:
+            file.write(bad)
+        code, said = run("inputs-files", **netted)
+        assert code != 0 and said.endswith(f"{name} is damaged. Remove it, and it is made again."), (bad[:9], said)
+        assert "results.json" not in files_of("inputs-files"), name
+        os.remove(path)
+        code, said = run("inputs-files", **netted)
+        assert code == 0 and "1 of 2 chunks are there already" in said, said
+        assert results_of("inputs-files") == whole, name
+
 # Large and odd JSON takes as long as reading it.
 start = time.monotonic()
 for text, word in (
