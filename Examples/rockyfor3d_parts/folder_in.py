@@ -3,6 +3,7 @@ import csv
 import json
 import math
 import os
+import tempfile
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from grids import Bad, Grid, write
 NEEDED = "dem", "rockdensity", "d1", "d2", "d3", "blshape", "rg70", "rg20", "rg10", "soiltype"
 FOREST = "nrtrees", "dbhmean", "dbhstd"  # and conif_percent
 NETS = "net_number", "net_energy", "net_height"
+NOT_ALWAYS = "dem.prj", "ground.prj", "trees.csv", "nets.csv"  # files of a study that another one may not have
 # name: least, largest, unit, whole numbers
 RANGES = {"rockdensity": (0, 5000, " kg/m³", False), "d1": (0, 100, " m", False), "d2": (0, 100, " m", False),
           "d3": (0, 100, " m", False), "blshape": (0, 4, "", True), "rg70": (0, 100, " m", False), "rg20": (0, 100, " m", False),
@@ -199,8 +201,25 @@ def nets(grids, path):
 
 
 def convert(source, target, iterations, per, seed):
+    """All of the study is made before any of it takes its place."""
     if iterations < 1:
         raise Bad(f"--iterations is {iterations}, it must be at least 1")
+    if os.path.samefile(source, target):
+        raise Bad(f"{target} is the folder of the rasters: take another one")
+    with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=target) as made:
+        notes = make(source, made, iterations, per, seed)
+        names = sorted(os.listdir(made))
+        for name in (*names, *NOT_ALWAYS):  # whether it is of an earlier study or somebody's own, nobody knows
+            path = os.path.join(target, name)
+            if os.path.lexists(path) and (name not in names or os.path.isdir(path)):
+                raise Bad(f"{path} is not of this study: remove it, or take another folder")
+        for name in names:
+            os.replace(os.path.join(made, name), os.path.join(target, name))
+    return "\n".join([*notes, f"Study: {os.path.join(target, 'study.json')}"])
+
+
+def make(source, target, iterations, per, seed):
+    """Files of a study; its notes."""
     grids = read(source)
     into = lambda name: os.path.join(target, name)
     dem = grids["dem"]
@@ -245,4 +264,4 @@ def convert(source, target, iterations, per, seed):
         json.dump(study, file, indent=1)
     with open(into("notes.txt"), "w", encoding="utf-8") as file:
         file.write("\n".join(notes) + "\n")
-    return "\n".join([*notes, f"Study: {into('study.json')}"])
+    return notes

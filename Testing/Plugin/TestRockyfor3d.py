@@ -10,7 +10,7 @@ import sys
 import numpy as np
 from osgeo import gdal
 
-from helpers import delete_sources, rows_of, run_script, write_grid, write_text
+from helpers import delete_sources, files_of, rows_of, run_script, write_grid, write_text
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
 sys.path[:0] = [os.path.join(EXAMPLES, "rockyfor3d_parts")]
@@ -156,7 +156,13 @@ assert gdal.Open("rasters/Nr_deposited.asc").ReadAsArray().sum() == rested > 0, 
 assert gdal.Open("rasters/Nr_passages.asc").ReadAsArray().sum() >= 12
 
 
-# What does not fit.
+# What does not fit: a study that is there stays as it was, and an empty folder empty.
+there = files_of("other")
+for name in ("empty", "fresh"):
+    shutil.rmtree(name, ignore_errors=True)
+    os.makedirs(name)
+
+
 def refused(word, name, values=None, **more):
     shutil.rmtree("bad", ignore_errors=True)
     shutil.copytree("folder", "bad")
@@ -166,8 +172,10 @@ def refused(word, name, values=None, **more):
         write_text(f"bad/{name}.asc", values)
     else:
         grid(name, values, "bad", **more)
-    message = run("rockyfor3d.py", "in", "bad", "other")
-    assert word in message and "bad" in message and "\n" not in message, (word, message)
+    for target, files in (("other", there), ("empty", {})):
+        message = run("rockyfor3d.py", "in", "bad", target)
+        assert word in message and "bad" in message and "\n" not in message, (word, message)
+        assert files_of(target) == files, (word, sorted(files_of(target)))
 
 
 refused("has no dem.asc", "dem")
@@ -187,6 +195,25 @@ refused("dbhmean.asc: row 1, column 101 is 0 cm", "dbhmean", 0)
 refused("net 7 has the height 0 m", "net_height", 0)
 refused("the cells of net 7 that touch each other do not lie along one line, as one is 10.0 cells off", "net_number",
         only([(row, column) for column in (150, 170) for row in range(80, 120)] + [(120, column) for column in range(150, 171)], 7))
+# Whose a file is that the new study does not have nobody knows: it is named, and nothing is written.
+run("rockyfor3d.py", "in", "folder", "other", "--seed", "5")
+there = files_of("other")
+shutil.rmtree("bad")
+shutil.copytree("folder", "bad")
+for name in ("net_number", "net_energy", "net_height"):
+    os.remove(f"bad/{name}.asc")
+os.remove("bad/dem.prj")
+for name in ("dem.prj", "ground.prj", "nets.csv"):
+    message = run("rockyfor3d.py", "in", "bad", "other")
+    assert message == f"other/{name} is not of this study: remove it, or take another folder", message
+    assert files_of("other") == there
+    os.remove(f"other/{name}")
+    del there[name]
+run("rockyfor3d.py", "in", "bad", "other", "--seed", "5"), run("rockyfor3d.py", "in", "bad", "fresh", "--seed", "5")
+assert files_of("other") == files_of("fresh") and "nets.csv" not in files_of("other")
+there = files_of("bad")
+assert run("rockyfor3d.py", "in", "bad", "./bad") == "./bad is the folder of the rasters: take another one"
+assert files_of("bad") == there
 assert "--iterations is 0" in run("rockyfor3d.py", "in", "folder", "other", "--iterations", "0")
 assert "it has no results.json" in run("rockyfor3d.py", "out", "folder", "rasters")
 os.remove("results/hazard.tif")
