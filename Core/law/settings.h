@@ -31,6 +31,14 @@ inline constexpr double kLeastRestitution = 0.01;
 /// Damping ratio of slip at an impact. High, so that a contact that sticks leaves without slip
 /// (rigid-body impact: no tangential restitution). Lower: shear springs give slip back.
 inline constexpr double kShearDamping = 5.0;
+/// Normal stiffness of contacts of two rocks, N/m (METHOD 9.1). Stiffer ones keep walls and columns
+/// from coming to rest: they drift by millimetres.
+inline constexpr double kPublishedPenalty = 1e9;
+/// Frequency of a lone rock on its penalty spring on the slope, rad/s. On a softer spring a rock
+/// turns while it goes on along the slope, and it jumps lower: with 600 by 5 to 28 % on hard ground,
+/// by 12 to 40 % out of scars. A stiffer one changes jumps and ways by 2 % at most, and takes
+/// shorter steps.
+inline constexpr double kSlopeFrequency = 1e4;
 
 // ---------------------------------------------------------------------------------------------
 // 2  Step of contact
@@ -63,6 +71,14 @@ inline constexpr double kStiffBesideContacts = 4.0;
 inline constexpr double kFastVibration = 1000.0;
 /// Gravity in √(g r) at least, m/s², so that speeds of rest exist without gravity.
 inline constexpr double kLeastGravity = 1e-3;
+/// Acceleration that a lasting step goes on with at most, in g. Higher: what an impact left moves a
+/// rock on.
+inline constexpr double kMostLag = 3.0;
+/// Share of the time to an impact that is one lasting step, so that a gap is left. Nearer to 1: the
+/// impact begins within that step.
+inline constexpr double kUpToImpact = 0.98;
+/// Gap that may close however the rock goes, as rounding hides it, share of r.
+inline constexpr double kHiddenGap = 1e-6;
 /// Longest Δt, s. A rock falls 5 cm in it; contacts of a longer one are met wrongly.
 inline constexpr double kMostTimeStep = 0.1;
 
@@ -153,6 +169,12 @@ inline constexpr double kSomeMore = 1.1;
 /// Edges that bend by less are flat and no feature, sine of the angle. Above the rounding of node
 /// heights of a plane (1e-12), below any slope that a survey can tell.
 inline constexpr double kFlatBend = 1e-7;
+/// Edges of rock and slope nearer to parallel than this sine are no pair.
+inline constexpr double kParallelOnSlope = 1e-4;
+/// Share of r by which strain and tolerances make a rock no larger than its box.
+inline constexpr double kAroundBox = 0.01;
+/// What rounding may hide of a way that pairs are kept over, share of r.
+inline constexpr double kSureTravel = 1e-7;
 /// Slack of the normal cones, sine of the angle: pairs do not get lost between two cones by
 /// rounding or by small penetration. Larger: wrong entrances at edges.
 inline constexpr double kConeSlack = 0.02;
@@ -240,7 +262,7 @@ inline constexpr double kSurely = 3e-2;
 inline constexpr double kMissed = 2e-3;
 /// Looks after which no further trees are let go: they hold for the rest of the step.
 inline constexpr int kTreeLooks = 8;
-/// Shortest step, s.
+/// Shortest step, s; the end of a run is as near.
 inline constexpr double kTooShort = 1e-9;
 
 // ---------------------------------------------------------------------------------------------
@@ -322,13 +344,16 @@ inline constexpr double kLostOverScar = 0.1;
 inline constexpr double kTurnInSoil = 0.2;
 /// Shortest piece, s.
 inline constexpr double kShortestPiece = 1e-6;
+/// For how long hops in one scar are one impact, s. Beyond it each draws its restitution anew: a
+/// rock whose impact had drawn 1 would hop on its face for ever.
+inline constexpr double kOneImpact = 1.0;
 /// Displacements that are none, m, and passages of corners through the surface, share of the
 /// motion, that are one.
 inline constexpr double kNoWay = 1e-9;
 inline constexpr double kSameBreak = 1e-9;
 
 // ---------------------------------------------------------------------------------------------
-// 13  Slope, roughness, structures
+// 12  Slope, roughness, structures
 
 /// Largest friction angle, degrees, drawn ones too: tan φ is 57 here.
 inline constexpr double kSteepestFriction = 89.0;
@@ -364,7 +389,7 @@ inline constexpr double kSamePlace = 1e-6;
 inline constexpr double kPieceEnd = 1e-9;
 
 // ---------------------------------------------------------------------------------------------
-// 14  Recording
+// 13  Recording
 
 /// Time between the knots before and after a velocity changes at once, s: a path has one point at a
 /// time.
@@ -373,12 +398,16 @@ inline constexpr double kInstant = 1e-9;
 inline constexpr double kOneTime = 0.5 * kInstant;
 /// Deviation of the path between two samples from the motion, in r. Smaller: more samples.
 inline constexpr double kPathTolerance = 0.01;
+/// Places where the ground's slope under a round rock is looked at, share of r.
+inline constexpr double kGroundAside = 1e-3;
 
 // ---------------------------------------------------------------------------------------------
-// 15  Release
+// 14  Release
 
 /// Largest height over the slope, m: 1000 m read as feet are 2000 m too high.
 inline constexpr double kHighestRelease = 500.0;
+/// Speed of a release that may be in flight, m/s: a slower one high over the slope is a mistake.
+inline constexpr double kInFlight = 5.0;
 /// Depth under its own weight, share of r; deeper, rocks do not always come to rest and energy gets
 /// lost: pₙ is refused.
 inline constexpr double kDeepestAtRest = 0.02;
@@ -425,7 +454,7 @@ inline constexpr int kMostDraws = 1000;
 inline constexpr int kMostDrawsOfSource = 10000;
 
 // ---------------------------------------------------------------------------------------------
-// 16  Limits of what a user sets on ground and runs: beyond them it is a mistake, or no end
+// 15  Limits of what a user sets on ground and runs: beyond them it is a mistake, or no end
 
 // Ground of larger numbers takes all of any speed at once, or nothing at all.
 inline constexpr double kMostScarFactor = 100.0;    ///< A thousand times that of Lu et al.

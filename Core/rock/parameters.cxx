@@ -46,19 +46,13 @@ void Fragmentation::validate() const
 
 double SimulationParameters::penaltyFor(double mass) const
 {
-  // rad/s. A softer spring turns a rock while it goes on along the slope, and the rock jumps lower:
-  // with 600 by 5 to 28 % on hard ground, by 12 to 40 % out of scars. A stiffer one changes jumps and
-  // ways by 2 % at most, and takes shorter steps.
-  constexpr double frequency = 1e4;
-  return std::max(
-    this->pairPenalty(), this->normalPenalty == 0.0 ? frequency * frequency * mass : 0.0);
+  const double ofLoneRock = kSlopeFrequency * kSlopeFrequency * mass;
+  return std::max(this->pairPenalty(), this->normalPenalty == 0.0 ? ofLoneRock : 0.0);
 }
 
 double SimulationParameters::pairPenalty() const
 {
-  // Stiffer ones keep walls and columns from coming to rest: they drift by millimetres.
-  constexpr double published = 1e9; // METHOD 9.1, N/m
-  return this->normalPenalty > 0.0 ? this->normalPenalty : published;
+  return this->normalPenalty > 0.0 ? this->normalPenalty : kPublishedPenalty;
 }
 
 void SimulationParameters::validate() const

@@ -53,26 +53,6 @@ inline double contactRestitution(
   return usual;
 }
 
-/// Damping ratio ζ of the dashpot of a contact that is about to close. `usual`: that of
-/// `restitution`.
-inline double contactDamping(const SurfaceMaterial& material, double restitution, double usual,
-  double approachSpeed, bool down)
-{
-  switch (material.restitutionModel)
-  {
-    case RestitutionModel::Velocity:
-      return down ? 0.0 : usual;
-    case RestitutionModel::NormalTangential:
-      return usual;
-    case RestitutionModel::SpeedDependent:
-    {
-      const double here = restitutionAtSpeed(restitution, approachSpeed, material.restitutionSpeed);
-      return here == restitution ? usual : dampingRatio(here); // what does not approach
-    }
-  }
-  return usual;
-}
-
 /// The velocity of the centroid after an impact, whose `normal` is the mean direction of its
 /// impulse, unit, out of the slope. Never gains energy.
 inline Vec3 adjustVelocity(

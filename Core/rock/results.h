@@ -14,8 +14,8 @@ namespace rockfall
 
 /// Losses of energy, J. Their sum is what the numerics kept; `numerical` is the remainder:
 /// released = kinetic + strain + friction + restitution + vibration + damping + structures +
-/// scars + rolling + breaking + exchanged + numerical. What two rocks exchange does not add up to nothing: the
-/// rest is lost, or held, between them.
+/// scars + rolling + breaking + exchanged + numerical. What two rocks exchange does not add up to
+/// nothing: the rest is lost, or held, between them.
 struct EnergyAudit
 {
   double released = 0.0;    ///< Start's kinetic energy plus potential energy given up.

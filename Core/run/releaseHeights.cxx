@@ -1,6 +1,7 @@
 #include "run/releaseHeights.h"
 
 #include "base/text/numberText.h"
+#include "law/settings.h"
 #include "rock/placement.h"
 #include "terrain/Surface.h"
 #include "terrain/doubt.h"
@@ -16,8 +17,6 @@ namespace rockfall
 
 namespace
 {
-
-constexpr double kInFlight = 5.0; // m/s
 
 double heightOver(const Surface& surface, const Rock& rock)
 {

@@ -7,7 +7,6 @@
 #include "rock/fall/contactPhase.h"
 #include "rock/fall/islandOfOne.h"
 #include "world/StepTrees.h"
-#include "world/pairSprings.h"
 #include "world/stepContacts.h"
 
 #include <algorithm>

@@ -10,7 +10,6 @@
 #include "world/StepResult.h"
 #include "world/StepTrees.h"
 #include "world/pairImpacts.h"
-#include "world/pairSprings.h"
 #include "world/stepContacts.h"
 #include "world/stepLayout.h"
 

@@ -7,7 +7,6 @@
 #include "rock/fall/atStructures.h"
 #include "rock/fall/contactPhase.h"
 #include "rock/fall/inSoil.h"
-#include "world/pairSprings.h"
 #include "world/stepLayout.h"
 
 #include <algorithm>
@@ -80,7 +79,8 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
     side.set(body); // what broke has taken speed
   }
   guardPenetrations(fall, fall.ground.candidates());
-  stiffenPressed(rock.sim);
+  const ImpactEvent* impact = fall.impact.underWay();
+  fall.springs.stiffenPressed(body, impact ? impact->velocityBefore.norm() : 0.0);
   setNewSprings(fall, h);
 }
 

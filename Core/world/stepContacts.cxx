@@ -7,6 +7,20 @@
 namespace rockfall
 {
 
+PairStiffness pairStiffness(const SimulationParameters& parameters)
+{
+  return { parameters.pairPenalty(), parameters.shearRatio, parameters.rigid };
+}
+
+void setSprings(const WorldState& world, const RockPair& pair, Contact& c)
+{
+  const RockBody& a = world.rocks[std::size_t(pair.first)].body();
+  const RockBody& b = world.rocks[std::size_t(pair.second)].body();
+  PairSprings(
+    pairStiffness(world.parameters), pair.law.damping, a.block, a.state, &b.block, &b.state)
+    .set(c);
+}
+
 IslandContact touchOfPair(const WorldState& world, RockPair& pair, const PairMotion& motion,
   Contact& c, const IslandWork& work)
 {

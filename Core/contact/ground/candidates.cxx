@@ -15,9 +15,6 @@ namespace rockfall
 namespace
 {
 
-/// Share of r by which rounding does not make a way shorter.
-constexpr double kSureTravel = 1e-7;
-
 /// Whether the boxes of two segments or points come within `distance`.
 bool boxesMeet(const Vec3& lower, const Vec3& upper, const Vec3& a, const Vec3& b, double distance)
 {

@@ -3,6 +3,7 @@
 #include "contact/ground/contactTransfer.h"
 #include "contact/ground/features.h"
 #include "contact/ground/roundContact.h"
+#include "law/settings.h"
 
 #include <Eigen/Geometry>
 
@@ -15,9 +16,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Share of r by which strain and tolerances make a rock no larger than its box.
-constexpr double kAroundBox = 0.01;
 
 bool samePlace(const Contact& a, const Contact& b)
 {

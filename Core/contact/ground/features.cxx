@@ -262,7 +262,7 @@ bool closestOnLines(
 {
   const double a = u.squaredNorm(), b = u.dot(w), c = w.squaredNorm();
   const double determinant = a * c - b * b;
-  if (determinant < 1e-8 * a * c)
+  if (determinant < kParallelOnSlope * kParallelOnSlope * a * c)
   {
     return false;
   }

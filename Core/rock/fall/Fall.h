@@ -15,6 +15,7 @@
 /// Phases: flightPhase, impulseImpacts, contactPhase; inSoil, atStructures and islandOfOne within
 /// them; endOfFall.
 
+#include "law/settings.h"
 #include "rock/parameters.h"
 #include "rock/parts/GroundNear.h"
 #include "rock/parts/Recorder.h"
@@ -37,7 +38,7 @@ struct Fall
 
   void end(Fate fate);
   /// Whether the horizon is reached, but for what is too short to be a step.
-  bool arrived() const { return this->body.state.time >= this->horizon - 1e-9; }
+  bool arrived() const { return this->body.state.time >= this->horizon - kTooShort; }
 
   const Surface& surface;
   const SimulationParameters& parameters;

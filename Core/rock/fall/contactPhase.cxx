@@ -6,7 +6,6 @@
 #include "contact/ground/motion.h"
 #include "contact/ground/roundContact.h"
 #include "contact/ground/timeToTouch.h"
-#include "contact/impactMode.h"
 #include "law/cohesion.h"
 #include "law/settings.h"
 #include "rock/fall/Fall.h"
@@ -48,7 +47,7 @@ std::uint64_t supportHash(const std::vector<Contact>& contacts)
 void keepAcceleration(Fall& fall)
 {
   RockBody& body = fall.body;
-  const double bound = 3.0 * fall.parameters.gravity;
+  const double bound = kMostLag * fall.parameters.gravity;
   const std::uint64_t carrying = supportHash(body.contacts);
   const bool same = carrying == std::exchange(fall.carrying, carrying);
   if (!same || body.acceleration.norm() > bound ||
@@ -133,9 +132,6 @@ bool flyFromContact(Fall& fall, double small)
   return false;
 }
 
-/// Gap that may close however the rock goes, as rounding hides it, share of r.
-constexpr double kHair = 1e-6;
-
 /// Lets go of open contacts whose own gaps do not close within a step: each is a row of its system.
 void forgetFarContacts(Fall& fall, double h)
 {
@@ -149,7 +145,7 @@ void forgetFarContacts(Fall& fall, double h)
     {
       const double approach = approachOf(body.state, spin, c.point, c.normal) + strains;
       return !c.closed() &&
-        c.gap() > (kFasterApproach * std::max(0.0, approach) + bend * h) * h + kHair * r;
+        c.gap() > (kFasterApproach * std::max(0.0, approach) + bend * h) * h + kHiddenGap * r;
     });
 }
 
@@ -260,7 +256,7 @@ void stayInContact(Fall& fall)
     const double speed =
       body.state.velocity.norm() + (body.state.spin.norm() + body.state.strainRate.norm()) * r;
     const double reach =
-      (kFasterApproach * speed + fall.parameters.gravity * ahead) * ahead + kHair * r;
+      (kFasterApproach * speed + fall.parameters.gravity * ahead) * ahead + kHiddenGap * r;
     // What may close within the step: a gap that is not among the contacts has no spring in it.
     fall.ground.ensureCandidates(body, fall.structures, reach);
     findContacts(fall, fall.ground.candidates(), reach, quiet ? large : 0.0);
@@ -280,7 +276,7 @@ void stayInContact(Fall& fall)
         continue;
       }
       // Up to the impact what carries does so.
-      const double until = 0.98 * first; // and a hair of a gap is left
+      const double until = kUpToImpact * first;
       if (first > small && until < h && anyClosed(body.contacts) &&
         fall.springs.mayLast(body, until))
       {
@@ -374,12 +370,7 @@ void setNewSprings(Fall& fall, double h)
   }
   if (!body.inIsland)
   {
-    tuneDashpots(
-      body.contacts, h,
-      [&body, spin = body.state.angularVelocity()](const Contact& c)
-      { return approachOf(body.state, spin, c.point, c.normal); },
-      [&body](const Vec3& force, const Vec3& moment, const Vec3& at)
-      { return response(body.placed, force, moment, at); });
+    fall.springs.tuneTogether(body, h);
   }
 }
 

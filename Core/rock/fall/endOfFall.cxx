@@ -58,7 +58,7 @@ void checkEnd(Fall& fall, double h)
   {
     fall.end(Fate::Rested);
   }
-  else if (body.state.time >= fall.parameters.endTime - 1e-9)
+  else if (body.state.time >= fall.parameters.endTime - kTooShort)
   {
     fall.end(Fate::Moving);
   }

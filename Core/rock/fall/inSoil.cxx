@@ -1,5 +1,6 @@
 #include "rock/fall/inSoil.h"
 
+#include "law/settings.h"
 #include "rock/fall/Fall.h"
 #include "rock/fall/endOfFall.h"
 #include "rock/fall/flightPhase.h"
@@ -9,10 +10,6 @@ namespace rockfall
 
 namespace
 {
-
-/// For how long hops in one scar are one impact, s. Beyond it each draws its restitution anew: a
-/// rock whose impact had drawn 1 would hop on its face for ever.
-constexpr double kOneImpact = 1.0;
 
 void raiseScar(Fall& fall, double by)
 {

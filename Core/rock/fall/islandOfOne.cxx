@@ -96,7 +96,7 @@ void stepAsIsland(Fall& fall, double h)
   StepRequest request;
   request.duration = h;
   request.gravity = fall.parameters.gravity;
-  request.substeps = std::max(1, int(std::ceil(kSubsteps * h / fall.parameters.timeStep - 1e-6)));
+  request.substeps = substepsOf(h, fall.parameters.timeStep);
   TrajectorySummary& summary = fall.recorder.trajectory().summary;
   IslandOutcome solved;
   for (int cut = 0; !solved.accepted; ++cut)

@@ -18,9 +18,6 @@ namespace rockfall
 namespace
 {
 
-/// Places where the ground's slope under a round rock is looked at, share of r.
-constexpr double kGroundAside = 1e-3;
-
 } // namespace
 
 double heightOverGround(const Surface& surface, const Block& block, const BlockState& state)

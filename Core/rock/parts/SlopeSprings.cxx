@@ -18,7 +18,7 @@ namespace
 struct ImpactFrequency
 {
   double sum = 0.0;      ///< Of each alone.
-  double together = 0.0; ///< Of what they stop together (impactMode.h).
+  double together = 0.0; ///< Of what they stop together (tuneTogether).
 
   void add(const Contact& c, bool acts)
   {
@@ -31,6 +31,21 @@ struct ImpactFrequency
     return std::min(this->sum, std::max({ one, kOneMotionShare * this->sum, this->together }));
   }
 };
+
+/// Response of a body to a force and its moment about `at` (N, N m): fᵀ M⁻¹ f, N² / kg.
+double response(const PlacedBlock& body, const Vec3& force, const Vec3& moment, const Vec3& at)
+{
+  const Vec3 turning = body.rotation().transpose() * (moment + (at - body.position()).cross(force));
+  return force.squaredNorm() / body.block().mass() +
+    turning.dot(body.block().inverseInertia() * turning);
+}
+
+/// The deepest overlap (m) at which a spring (N/m) holds no more energy than a rock brings that comes
+/// at `speed` (m/s). What is deeper others have pressed in.
+double deepestOf(const Block& block, double speed, double stiffness)
+{
+  return std::max(kFirm * block.radius(), kSomeMore * speed * std::sqrt(block.mass() / stiffness));
+}
 
 } // namespace
 
@@ -228,13 +243,81 @@ void SlopeSprings::give(Contact& c, const RockBody& body, double restitution)
   const bool down = approach > body.restingSpeed &&
     comesDown(approach, speed, parameters_.gravity, body.block.radius());
   const int ground = surface_.restitutionClass(c.cfe);
-  const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground), restitution,
-    this->dampingRatioFor(ground, restitution), approach, down);
+  const double here =
+    contactRestitution(surface_.terrain().restitutionMaterial(ground), restitution, approach, down);
+  const double damped =
+    here == restitution ? this->dampingRatioFor(ground, restitution) : dampingRatio(here);
   const double mobility = body.block.mobility(n, y);
   c.frequency2 = c.stiffness * mobility;
   c.stopped = 1.0 / mobility;
   c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
   c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / body.block.mobility(t, y));
+}
+
+void SlopeSprings::tuneTogether(RockBody& body, double h) const
+{
+  const auto approachTo = [&body, spin = body.state.angularVelocity()](const Contact& c)
+  { return approachOf(body.state, spin, c.point, c.normal); };
+  const auto stops = [h](const Contact& c, double approach)
+  { return c.closed() || (approach > 0.0 && c.gap() < approach * h); };
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero(), at = Vec3::Zero();
+  double work = 0.0;
+  int count = 0;
+  bool damped = false;
+  for (const Contact& c : body.contacts)
+  {
+    const double approach = approachTo(c);
+    if (!stops(c, approach))
+    {
+      continue;
+    }
+    at = count++ == 0 ? c.point : at;
+    const Vec3 f = c.stiffness * approach * c.normal;
+    force += f;
+    moment += (c.point - at).cross(f);
+    work += c.stiffness * approach * approach;
+    damped = damped || (!c.closed() && c.dashpot > 0.0);
+  }
+  if (count < 2 || !damped || !(work > 0.0))
+  {
+    return;
+  }
+  const double frequency2 = response(body.placed, force, moment, at) / work;
+  for (Contact& c : body.contacts)
+  {
+    if (!c.closed() && stops(c, approachTo(c)))
+    {
+      const double together2 = std::max(frequency2, kLowestImpactMode * c.frequency2);
+      c.dashpot *= std::sqrt(c.frequency2 / together2);
+      c.stopped = c.stiffness / together2;
+    }
+  }
+}
+
+void SlopeSprings::stiffenPressed(RockBody& body, double fastest) const
+{
+  const double r = body.block.radius();
+  const double speed = std::max(fastest, body.state.velocity.norm() + body.state.spin.norm() * r);
+  for (Contact& c : body.contacts)
+  {
+    if (!c.closed() || c.gap() >= -kFirm * r)
+    {
+      continue;
+    }
+    const double share = deepestOf(body.block, speed, c.stiffness) / -c.gap();
+    if (share < 1.0)
+    {
+      // The same force at less overlap. What the spring held more is not given back.
+      const double lost = 0.5 * c.stiffness * c.gap() * c.gap() * (1.0 - share);
+      c.offset = c.distance - share * c.gap();
+      c.stiffness /= share;
+      c.frequency2 /= share;
+      c.dashpot /= std::sqrt(share);
+      body.energy.restitution += lost;
+      body.springEnergy = std::max(0.0, body.springEnergy - lost);
+      body.normalEnergy = std::max(0.0, body.normalEnergy - lost);
+    }
+  }
 }
 
 } // namespace rockfall

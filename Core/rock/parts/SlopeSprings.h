@@ -31,6 +31,19 @@ public:
   void join(RockBody& body);
   /// Springs and dashpot of a contact that is about to close. `restitution`: of the ground there.
   void give(Contact& contact, const RockBody& body, double restitution);
+  /// Dashpots of contacts that stop the rock together within a step of `h` (s), given as if each were
+  /// alone. A dashpot of 2 ζ k / ω makes the coefficient of restitution that ζ stands for if ω is the
+  /// frequency of what comes against the spring. A contact alone feels the mobility of its own point.
+  /// Several feel what they stop together: four corners of a plate that falls on its face stop its
+  /// mass, though each alone would turn it. That is Rayleigh's quotient for springs that are
+  /// compressed in proportion to the speeds v at which they come in, ω² = fᵀ M⁻¹ f / Σ k v², with f
+  /// the forces k v of all of them. Dashpots in proportion to the springs damp nothing else.
+  void tuneTogether(RockBody& body, double h) const;
+  /// Stiffens springs into which others press the rock. A spring of a light rock is made for what the
+  /// rock itself brings, at `fastest` (m/s) since its impact began. Under a boulder it would take the
+  /// boulder's energy, at an overlap as large as the stone, and give it to the stone: hundreds of
+  /// m/s. In nature the stone is crushed.
+  void stiffenPressed(RockBody& body, double fastest) const;
 
   // Lengths of a step, s
 

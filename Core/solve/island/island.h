@@ -11,6 +11,7 @@
 #include "solve/step/StepSolver.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace rockfall
@@ -18,6 +19,12 @@ namespace rockfall
 
 /// Bodies and rows that one thread looks after at a time.
 constexpr std::size_t kBodyGrain = 64, kRowGrain = 256;
+
+/// Substeps of a step of `h` (s).
+inline int substepsOf(double h, double timeStep)
+{
+  return std::max(1, int(std::ceil(kSubsteps * h / timeStep - 1e-6)));
+}
 
 struct IslandBody
 {

@@ -298,7 +298,7 @@ typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
       right += (row.law.shearForce[a] + gradient.dot(d)) * row.shear[a];
     }
   }
-  return solveInPlace<N>(matrix, right);
+  return solved<N>(matrix, right);
 }
 
 template <int N>

@@ -5,19 +5,18 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace rockfall
 {
 
-/// Solves K x = b by elimination with row pivots; K and b are overwritten. For N = 6 several times
-/// faster than a general LU, and it does not matter that friction makes K unsymmetric. A singular K
-/// gives numbers that are not finite.
+/// Solves K x = b by elimination with row pivots. For N = 6 several times faster than a general LU,
+/// and it does not matter that friction makes K unsymmetric. A singular K gives numbers that are not
+/// finite.
 template <int N>
-Eigen::Matrix<double, N, 1> solveInPlace(
-  Eigen::Matrix<double, N, N>& k, Eigen::Matrix<double, N, 1>& b)
+Eigen::Matrix<double, N, 1> solved(
+  const Eigen::Matrix<double, N, N>& k, const Eigen::Matrix<double, N, 1>& b)
 {
   double a[N][N + 1];
   for (int i = 0; i < N; ++i)
