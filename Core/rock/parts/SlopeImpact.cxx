@@ -2,6 +2,7 @@
 
 #include "law/settings.h"
 #include "rock/restitution.h"
+#include "terrain/Obstacles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +28,10 @@ bool SlopeImpact::breaks(const RockBody& body) const
   const Fragmentation& law = parameters_.fragmentation;
   const double normal = event_.normal.dot(event_.velocityBefore);
   const double density = body.block.mass() / body.block.volume();
-  return body.block.volume() > law.leastVolume && 0.5 * density * normal * normal >= law.energy &&
+  const Obstacles* obstacles = surface_.terrain().obstacles();
+  const bool onGround = !obstacles || event_.cfe < obstacles->firstCfe();
+  return onGround && body.block.volume() > law.leastVolume &&
+    0.5 * density * normal * normal >= law.energy &&
     !(surface_.drawTwo(Draw::Survival, std::uint64_t(number_) << 32 | impactsOver_)[0] <
       law.survival);
 }
