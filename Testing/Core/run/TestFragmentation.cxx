@@ -379,13 +379,13 @@ Rock thrownDown(double speed)
 
 /// Flat ground with a net behind the place where a rock breaks, which is the weaker the more it
 /// has held.
-Terrain withNet(double capacity)
+Terrain withNet(double capacity, double x = 106.0)
 {
   Terrain terrain = flatGround();
   Structures s;
   Barrier& b = s.barriers.emplace_back();
   b.feature = 1;
-  b.points = { { 106.0, 10.0 }, { 106.0, 190.0 } };
+  b.points = { { x, 10.0 }, { x, 190.0 } };
   b.height = 30.0;
   b.capacity = capacity;
   b.residual = 0.9;
@@ -441,6 +441,32 @@ TEST(Fragmentation, ANetHasHeldThePiecesThatCameBefore)
   EXPECT_TRUE(broken);
   // What came before is as it was: the net does not reach back in time.
   EXPECT_EQ(strong[0].summary.hash, all[0].summary.hash);
+}
+
+/// A rock breaks with its centre before a net and some of its pieces behind it: it holds them, too.
+TEST(Fragmentation, ANetHoldsPiecesThatAreBornBehindIt)
+{
+  const Rock rock = thrownDown(12.0);
+  Fragmentation law = lawOf(50e3, 5e-3);
+  law.spread = radians(30.0);
+  const double breaks = runOf(flatGround(), { rock }, law)[0].summary.stop.x();
+  for (const double ahead : { 0.01, 0.1, 0.2 })
+  {
+    const double net = breaks + ahead;
+    const auto all = runOf(withNet(1e12, net), { rock }, law);
+    ASSERT_EQ(all[0].summary.fate, Fate::Broken);
+    ASSERT_NEAR(all[0].summary.stop.x(), breaks, 1e-9);
+    int held = 0;
+    for (std::size_t k = 1; k < all.size(); ++k)
+    {
+      const TrajectorySummary& s = all[k].summary;
+      EXPECT_LT(s.stop.x(), net + 1e-6) << k << ' ' << ahead;
+      EXPECT_NEAR(s.energy.numerical, 0.0, 1e-6 * all[0].summary.maxKineticEnergy);
+      held +=
+        all[k].structures.size() == 1 && all[k].samples.front().time == all[k].structures[0].time;
+    }
+    EXPECT_GT(held, 0) << ahead;
+  }
 }
 
 TEST(Fragmentation, AStemThatAPieceBreaksIsGoneForTheOthers)
