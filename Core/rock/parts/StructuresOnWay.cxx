@@ -47,6 +47,7 @@ struct StemHit
   double offset = 0.0;       ///< See terrain/stemHit.h.
   Vec3 away = Vec3::Zero();  ///< Of the stem's push on the rock; zero if the rock moves upright.
   Vec3 along = Vec3::Zero(); ///< Of the rock that slips past the stem.
+  Vec3 axis = Vec3::Zero();  ///< The stem pushes square to it; zero: against its end.
 };
 
 /// How far a block reaches from its centre against a direction, m.
@@ -86,12 +87,13 @@ StemHit hitOnLying(const LyingStem& stem, const Block& block, const BlockState& 
   const double distance = side.norm();
   if (!(distance > 0.0))
   {
-    return { 0.0, -along, along };
+    return { 0.0, -along, along, within ? axis : Vec3::Zero() };
   }
   side /= distance;
   const double offset = std::min(1.0, distance / (reachAgainst(block, state, side) + stem.radius));
   const double towards = std::sqrt(1.0 - offset * offset);
-  return { offset, offset * side - towards * along, towards * side + offset * along };
+  return { offset, offset * side - towards * along, towards * side + offset * along,
+    within ? axis : Vec3::Zero() };
 }
 
 StemHit hitOn(const Obstacles& obstacles, int tree, const Block& block, const BlockState& state)
@@ -104,7 +106,7 @@ StemHit hitOn(const Obstacles& obstacles, int tree, const Block& block, const Bl
   const double speed = state.velocity.head<2>().norm();
   if (!(speed > 0.0))
   {
-    return {};
+    return { 0.0, Vec3::Zero(), Vec3::Zero(), Vec3::UnitZ() };
   }
   const Vec3 along(state.velocity.x() / speed, state.velocity.y() / speed, 0.0);
   Vec3 side(-along.y(), along.x(), 0.0); // on which the rock passes
@@ -117,42 +119,59 @@ StemHit hitOn(const Obstacles& obstacles, int tree, const Block& block, const Bl
   const double reach = reachAgainst(block, state, side);
   const double offset = std::min(1.0, distance / (reach + 0.5 * stem.diameter));
   const double towards = std::sqrt(1.0 - offset * offset);
-  return { offset, offset * side - towards * along, towards * side + offset * along };
+  return { offset, offset * side - towards * along, towards * side + offset * along,
+    Vec3::UnitZ() };
+}
+
+/// The state without its velocity along the axis of a stem, which no push of it changes.
+BlockState acrossOf(const StemHit& hit, const BlockState& state)
+{
+  BlockState across = state;
+  across.velocity -= hit.axis.dot(state.velocity) * hit.axis;
+  return across;
+}
+
+/// Takes kinetic energy (J) of the velocity across the stem, and of spin if that is not enough.
+void slowAcross(BlockState& state, const Block& block, const StemHit& hit, double taken)
+{
+  BlockState across = acrossOf(hit, state);
+  const Vec3 forth = state.velocity - across.velocity;
+  slowDown(across, rigidKineticEnergy(block, across), taken);
+  state.velocity = forth + across.velocity;
+  state.spin = across.spin;
 }
 
 /// Takes kinetic energy (J) by a push: it turns the velocity and leaves the spin. What a push that
-/// way cannot take slows all down.
-void pushAway(BlockState& state, const Block& block, const Vec3& away, double taken)
+/// way cannot take slows all down that the stem can act on.
+void pushAway(BlockState& state, const Block& block, const StemHit& hit, double taken)
 {
   if (!(taken > 0.0))
   {
     return;
   }
   const double energy = rigidKineticEnergy(block, state);
-  const double towards = std::max(0.0, -away.dot(state.velocity));
+  const double towards = std::max(0.0, -hit.away.dot(state.velocity));
   const double left = std::sqrt(std::max(0.0, towards * towards - 2.0 * taken / block.mass()));
-  state.velocity += (towards - left) * away;
-  const double rest = rigidKineticEnergy(block, state);
-  const double more = taken - (energy - rest);
+  state.velocity += (towards - left) * hit.away;
+  const double more = taken - (energy - rigidKineticEnergy(block, state));
   if (more > 1e-12 * energy)
   {
-    slowDown(state, rest, more);
+    slowAcross(state, block, hit, more);
   }
 }
 
-/// Takes kinetic energy (J) and turns the velocity in plan to this direction; spin is left. What
-/// the velocity in plan does not have slows all down.
-void slipPast(BlockState& state, const Block& block, const Vec3& along, double taken)
+/// Takes kinetic energy (J) and turns the velocity in plan to where it slips past; spin is left. What
+/// the velocity in plan does not have slows all down that the stem can act on.
+void slipPast(BlockState& state, const Block& block, const StemHit& hit, double taken)
 {
   const double energy = rigidKineticEnergy(block, state);
   const double inPlan = state.velocity.head<2>().squaredNorm();
   state.velocity.head<2>() =
-    std::sqrt(std::max(0.0, inPlan - 2.0 * taken / block.mass())) * along.head<2>();
-  const double rest = rigidKineticEnergy(block, state);
-  const double more = taken - (energy - rest);
+    std::sqrt(std::max(0.0, inPlan - 2.0 * taken / block.mass())) * hit.along.head<2>();
+  const double more = taken - (energy - rigidKineticEnergy(block, state));
   if (more > 1e-12 * energy)
   {
-    slowDown(state, rest, more);
+    slowAcross(state, block, hit, more);
   }
 }
 
@@ -275,16 +294,18 @@ void StructuresOnWay::passTree(
   StructureEvent event =
     eventAt(stands ? StructureOutcome::TreePassed : StructureOutcome::TreeBroken, stem.feature,
       body.state, energy, height);
-  const double taken = stemShare(hit.offset) * stem.capacity;
+  // No more than its push can take, of which springs hold a part already.
+  const double across = rigidKineticEnergy(body.block, acrossOf(hit, body.state));
+  const double taken = std::min(stemShare(hit.offset) * stem.capacity, held + across);
   event.energyTaken = std::max(held, taken);
   events.push_back(event);
   if (stands)
   {
-    slipPast(body.state, body.block, hit.along, std::max(0.0, taken - held));
+    slipPast(body.state, body.block, hit, std::max(0.0, taken - held));
   }
   else
   {
-    pushAway(body.state, body.block, hit.away, taken - held);
+    pushAway(body.state, body.block, hit, taken - held);
     broke_.trees.push_back(tree);
   }
   body.energy.structures += held + energy - rigidKineticEnergy(body.block, body.state);

@@ -206,6 +206,24 @@ TEST(BrokenStructures, LoadsAreThoseOfOneIterationOnAnyNumberOfThreads)
   EXPECT_EQ(run(4), alone);
 }
 
+/// The push of an upright stem is level: what falls along it keeps its speed down.
+TEST(BrokenStructures, AStemTakesNothingOfAFallAlongIt)
+{
+  for (const double across : { 0.5, 2.0, 8.0 })
+  {
+    const Vec3 velocity(across, 0.0, -28.0); // 980 kJ
+    const Rock rock = thrown(velocity, 0.1, 0, { 60.0, 50.0, 112.0 });
+    const std::vector<Trajectory> runs = runTogether(stem({ 60.6, 50.0 }, 250e3), { rock });
+    ASSERT_EQ(runs[0].structures.size(), 1u) << across;
+    const StructureEvent& event = runs[0].structures[0];
+    EXPECT_EQ(event.outcome, StructureOutcome::TreeBroken);
+    const double level = 0.5 * 2500.0 * across * across;
+    EXPECT_LE(event.energyTaken, level * (1.0 + 1e-9)) << across;
+    EXPECT_GE(event.energyTaken, 0.9 * level) << across;
+    EXPECT_NEAR(runs[0].summary.energy.structures, event.energyTaken, 1e-9 * event.kineticEnergy);
+  }
+}
+
 TEST(BrokenStructures, TreeIsGoneForTheNext)
 {
   const Structures one = stem({ 60.0, 50.0 }, 350e3);
