@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace rockfall
 {
@@ -52,14 +54,15 @@ double IslandStepper::timeReached(double until) const
 
 void IslandStepper::fly(double duration)
 {
-  for (int i : island_.members)
-  {
-    SingleRock& sim = world_.rocks[i].sim;
-    if (!sim.body().done)
+  work_.forMembers(world_, island_,
+    [&](std::size_t m)
     {
-      flyFree(sim.fall(), duration);
-    }
-  }
+      SingleRock& sim = world_.rocks[std::size_t(island_.members[m])].sim;
+      if (!sim.body().done)
+      {
+        flyFree(sim.fall(), duration);
+      }
+    });
   for (RockPair* pair : island_.pairs)
   {
     pair->contacts.clear();
@@ -83,8 +86,20 @@ double IslandStepper::beginContacts()
   return travel;
 }
 
-void IslandStepper::advance(double until)
+void IslandStepper::advance(double until, bool atBarrier)
 {
+  work_.turns.clear();
+  if (atBarrier)
+  {
+    std::vector<double> times;
+    for (const int i : island_.members)
+    {
+      times.push_back(world_.timeToBarrier(i, until - world_.time));
+    }
+    work_.turns.resize(times.size());
+    std::iota(work_.turns.begin(), work_.turns.end(), std::size_t(0));
+    std::ranges::stable_sort(work_.turns, {}, [&](std::size_t m) { return times[m]; });
+  }
   while (this->timeReached(until) < until - kTooShort)
   {
     stayWanted();
@@ -184,7 +199,7 @@ void IslandStepper::solve(double h)
   StepRequest request;
   request.duration = h;
   request.gravity = world_.parameters.gravity;
-  request.substeps = std::max(1, int(std::ceil(kSubsteps * h / world_.parameters.timeStep - 1e-6)));
+  request.substeps = substepsOf(h, world_.parameters.timeStep);
   this->cutUntilAccepted(request);
   const RockBody& first = world_.rocks[std::size_t(island_.members.front())].body();
   if (work_.bodies.front().state->time <= first.before.time && !first.done)

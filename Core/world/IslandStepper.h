@@ -13,7 +13,8 @@ class IslandStepper
 public:
   IslandStepper(WorldState& world, const Island& island);
 
-  void advance(double until); ///< To a time, s.
+  /// To a time, s. `atBarrier`: no other is under way, as rocks may meet a barrier.
+  void advance(double until, bool atBarrier);
 
 private:
   double timeReached(double until) const; ///< s; `until` if all are gone.

@@ -3,6 +3,7 @@
 /// @file
 /// Working memory of a step of an island (IslandStepper).
 
+#include "base/parallel.h"
 #include "solve/island/SoftSolver.h"
 #include "world/WorldState.h"
 
@@ -59,6 +60,12 @@ struct IslandWork
   };
   std::vector<Stem> stems;
   int looks = 0; ///< Number that the step has had.
+  /// Of an island at a barrier, which is the only one under way: numbers of its rocks in it, in the
+  /// order in which they may come to it. Else empty.
+  std::vector<std::size_t> turns;
+  /// Calls this with the number of each rock in the island, on all threads, or in turn.
+  template <typename Use>
+  void forMembers(WorldState& world, const Island& island, Use&& use);
   /// By pair, the places of the two; −1: gone.
   std::vector<std::array<int, 2>> places;
   std::vector<int> placeOf; ///< By rock, of those in the island.
@@ -118,6 +125,20 @@ inline void IslandWork::Side::set(const RockBody& body)
   resting = body.restingSpeed;
   pushed = 0.0;
   done = body.done;
+}
+
+template <typename Use>
+void IslandWork::forMembers(WorldState& world, const Island& island, Use&& use)
+{
+  if (turns.empty())
+  {
+    forEach(island.members.size(), kRockGrain, use);
+  }
+  for (const std::size_t m : turns)
+  {
+    use(m);
+    world.shareBarriers(world.rocks[std::size_t(island.members[m])]);
+  }
 }
 
 inline void IslandWork::count(SingleRock& sim) const

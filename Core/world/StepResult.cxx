@@ -39,7 +39,7 @@ void StepResult::apply()
   forEach(work_.touching.size(), kPairGrain, [this](std::size_t t) { this->applyToPair(t); });
   this->applyAdded();
   this->finishImpacts();
-  forEach(island_.members.size(), kRockGrain, [this](std::size_t m) { this->applyToRock(m); });
+  work_.forMembers(world_, island_, [this](std::size_t m) { this->applyToRock(m); });
   forEach(island_.pairs.size(), kPairGrain, [this](std::size_t p) { this->keepAxis(p); });
 }
 

@@ -12,6 +12,8 @@
 #include "world/sleep.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace rockfall
@@ -24,7 +26,7 @@ World::World(const Surface& surface, std::span<const Rock> rocks, std::span<cons
   world_.rocks.reserve(rocks.size());
   if (const Obstacles* obstacles = surface.terrain().obstacles())
   {
-    barrierLoads_.resize(obstacles->structures().barriers.size());
+    world_.barrierLoads.resize(obstacles->structures().barriers.size());
   }
   for (std::size_t i = 0; i < rocks.size(); ++i)
   {
@@ -33,7 +35,7 @@ World::World(const Surface& surface, std::span<const Rock> rocks, std::span<cons
     if (parameters.rockRockContact)
     {
       rock.body().letStrainFollow();
-      rock.fall().structures.setBarrierLoads(&barrierLoads_);
+      rock.fall().structures.setBarrierLoads(&world_.barrierLoads);
     }
   }
   if (parameters.rockRockContact)
@@ -112,17 +114,11 @@ void World::shareBroken()
   StructuresOnWay::Broken all;
   for (FallingRock& rock : world_.rocks)
   {
-    const StructuresOnWay::Broken one = rock.fall().structures.drainBroken();
-    all.trees.insert(all.trees.end(), one.trees.begin(), one.trees.end());
-    all.barriers.insert(all.barriers.end(), one.barriers.begin(), one.barriers.end());
-    for (const auto& [barrier, held] : one.held)
-    {
-      BarrierLoad& load = barrierLoads_[std::size_t(barrier)];
-      load.energy += held.energy;
-      load.volume += held.volume;
-    }
+    world_.shareBarriers(rock);
+    const std::vector<int> trees = rock.fall().structures.drainBroken().trees;
+    all.trees.insert(all.trees.end(), trees.begin(), trees.end());
   }
-  if (all.trees.empty() && all.barriers.empty())
+  if (all.trees.empty())
   {
     return;
   }
@@ -142,7 +138,7 @@ bool World::advance()
   this->step(until);
   const bool moving = std::any_of(world_.rocks.begin(), world_.rocks.end(),
     [](const FallingRock& rock) { return !rock.sim.done(); });
-  return moving && world_.time < p.endTime - 1e-9;
+  return moving && world_.time < p.endTime - kTooShort;
 }
 
 void World::step(double until)
@@ -165,18 +161,57 @@ void World::advanceAll(double until)
   std::stable_sort(order_.begin(), order_.end(),
     [&](int a, int b)
     { return islands[std::size_t(a)].members.size() > islands[std::size_t(b)].members.size(); });
-  const auto advanceOne = [&](std::size_t k)
+  const auto advanceOne = [&](std::size_t k, bool atBarrier)
   {
     if (k < islands.size())
     {
-      IslandStepper(world_, islands[std::size_t(order_[k])]).advance(until);
+      IslandStepper(world_, islands[std::size_t(order_[k])]).advance(until, atBarrier);
       return;
     }
     FallingRock& rock = world_.rocks[std::size_t(alone[k - islands.size()])];
     rock.advanceAlone(until);
     isStill(world_, rock); // to know when it comes back to an island
+    if (atBarrier)
+    {
+      world_.shareBarriers(rock);
+    }
   };
-  forEach(islands.size() + alone.size(), 1, advanceOne);
+  const std::size_t count = islands.size() + alone.size();
+  std::vector<char> meets(count);
+  atBarriers_.clear();
+  if (!world_.barrierLoads.empty())
+  {
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      const std::span<const int> rocks = k < islands.size()
+        ? std::span<const int>(islands[std::size_t(order_[k])].members)
+        : std::span<const int>(&alone[k - islands.size()], 1);
+      double time = std::numeric_limits<double>::infinity();
+      for (const int i : rocks)
+      {
+        time = std::min(time, world_.timeToBarrier(i, until - world_.time));
+      }
+      meets[k] = std::isfinite(time);
+      if (meets[k])
+      {
+        atBarriers_.emplace_back(time, k);
+      }
+    }
+  }
+  forEach(count, 1,
+    [&](std::size_t k)
+    {
+      if (!meets[k])
+      {
+        advanceOne(k, false);
+      }
+    });
+  // What one of them leaves of a barrier the next one meets.
+  std::sort(atBarriers_.begin(), atBarriers_.end());
+  for (const auto& [time, k] : atBarriers_)
+  {
+    advanceOne(k, true);
+  }
 }
 
 void World::settle(double before)

@@ -60,13 +60,14 @@ public:
 private:
   void step(double until);
   void advanceAll(double until); ///< Islands, and rocks that meet no other, on all threads.
-  void shareBroken();            ///< And what barriers have held.
+  void shareBroken();            ///< Trees and barriers.
   void settle(double before);    ///< Islands of a step that began at this time, s.
 
   WorldState world_;
-  std::vector<BarrierLoad> barrierLoads_;      ///< What each barrier has held so far.
   std::unique_ptr<IslandFinder> islandFinder_; ///< None if rocks hit no other.
   std::vector<int> order_; ///< Islands in the order in which they are gone over.
+  /// Islands and, behind them, rocks alone that may meet a barrier in the step, by when.
+  std::vector<std::pair<double, std::size_t>> atBarriers_;
 };
 
 } // namespace rockfall

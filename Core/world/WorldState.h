@@ -102,7 +102,14 @@ struct WorldState
   const SimulationParameters& parameters;
   RockContacts contacts; ///< Laws of the rocks on each other.
   FallingRocks rocks;
-  double time = 0.0; ///< s
+  std::vector<BarrierLoad> barrierLoads; ///< What each barrier has held so far.
+  double time = 0.0;                     ///< s
+
+  /// Until a rock may meet a barrier that does not only record, within this time; both s. ∞ if it
+  /// may not.
+  double timeToBarrier(int rock, double duration) const;
+  /// Barriers that a rock has loaded or broken are so for all others, at once.
+  void shareBarriers(FallingRock& rock);
 };
 
 /// Rocks that may touch each other within a step, in the order of their numbers.

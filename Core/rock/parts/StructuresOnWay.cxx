@@ -322,6 +322,11 @@ StructuresOnWay::Broken StructuresOnWay::drainBroken()
   return std::exchange(broke_, {});
 }
 
+StructuresOnWay::Broken StructuresOnWay::drainBarriers()
+{
+  return { {}, std::exchange(broke_.barriers, {}), std::exchange(broke_.held, {}) };
+}
+
 bool StructuresOnWay::apply(const Broken& broken, const SurfacePatch& patch)
 {
   for (const int barrier : broken.barriers)

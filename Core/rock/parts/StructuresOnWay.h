@@ -99,7 +99,8 @@ public:
     std::vector<int> trees, barriers;
     std::vector<std::pair<int, BarrierLoad>> held;
   };
-  Broken drainBroken(); ///< What it has broken since it was asked last.
+  Broken drainBroken();   ///< What it has broken since it was asked last.
+  Broken drainBarriers(); ///< The same without trees.
   /// What others have broken is gone for this rock, too. Whether a tree was near a piece of slope.
   bool apply(const Broken& broken, const SurfacePatch& patch);
 

@@ -143,6 +143,47 @@ TEST(BrokenStructures, WhatANetHoldsLoadsItForTheNext)
   }
 }
 
+/// Ten rocks side by side at a net that holds one: at once, or one after the other within a step,
+/// in the air or as an island, on any number of threads.
+TEST(BrokenStructures, RocksOfOneStepMeetWhatTheOthersLeave)
+{
+  for (const double lag : { 0.0, 1e-3, -1e-3 })
+  {
+    for (const double apart : { 4.0, 1.02 })
+    {
+      for (const bool absorbs : { false, true })
+      {
+        SCOPED_TRACE(::testing::Message() << lag << ' ' << apart << ' ' << absorbs);
+        std::vector<Rock> rocks;
+        for (int k = 0; k < 10; ++k)
+        {
+          rocks.push_back(thrown(kSlow, 0.2, k, Vec3(60.0 - 15.0 * lag * k, 40 + apart * k, 103)));
+        }
+        Structures s = net(300e3);
+        s.barriers[0].residual = 1.0;
+        s.barriers[0].absorbs = absorbs;
+        const std::vector<Trajectory> runs = runTogether(s, rocks);
+        const int first = lag < 0.0 ? 9 : 0;
+        double taken = 0.0;
+        int held = 0, broke = 0;
+        for (const Trajectory& run : runs)
+        {
+          for (const StructureEvent& event : run.structures)
+          {
+            taken += event.energyTaken;
+            held += event.outcome == StructureOutcome::BarrierStopped;
+            broke += event.outcome == StructureOutcome::BarrierBroken;
+          }
+        }
+        EXPECT_EQ(held, 1);
+        EXPECT_EQ(broke, 1);
+        EXPECT_LE(taken, 300e3 * (1.0 + 1e-12));
+        EXPECT_EQ(runs[std::size_t(first)].summary.fate, Fate::Caught);
+      }
+    }
+  }
+}
+
 TEST(BrokenStructures, FillAndRopeLetRocksOver)
 {
   // The top comes at 102.5 m, under the rope at 103 m; a rock before it wears or fills the net.
