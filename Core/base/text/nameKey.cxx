@@ -29,6 +29,13 @@ std::string nameKey(std::string_view name)
   return std::string(trimmed(U_SUCCESS(status) ? std::string_view(key) : name));
 }
 
+std::string letterKey(std::string_view name)
+{
+  std::string key = nameKey(name);
+  std::erase_if(key, [](char c) { return !((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')); });
+  return key;
+}
+
 bool isUtf8(std::string_view text)
 {
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());

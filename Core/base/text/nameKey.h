@@ -15,6 +15,10 @@ namespace rockfall
 /// bytes that are not UTF-8 are all one letter.
 std::string nameKey(std::string_view name);
 
+/// Letters a to z and digits of the key alone: "North_American_Vertical_Datum_1988" is as good as
+/// with blanks.
+std::string letterKey(std::string_view name);
+
 /// Whether all of it is UTF-8.
 bool isUtf8(std::string_view text);
 

@@ -72,7 +72,7 @@ bool isAllNumbers(const RowCells& cells)
 }
 
 /// The row with commas between its cells, all of them quoted.
-std::string inQuotes(const RowCells& cells)
+std::string csvRow(const RowCells& cells)
 {
   std::string row;
   for (std::string cell : cells)
@@ -86,7 +86,7 @@ std::string inQuotes(const RowCells& cells)
   return row + "\n";
 }
 
-bool isBlank(std::string_view line)
+bool isBlankLine(std::string_view line)
 {
   return line.find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
@@ -104,7 +104,7 @@ struct TableHead
     for (std::string_view line; header.empty() && lines.take(line);)
     {
       const char separator = said ? '\0' : separatorLine(line).value_or('\0');
-      if (!separator && !isComment(line) && !isBlank(line))
+      if (!separator && !isComment(line) && !isBlankLine(line))
       {
         header = line;
         return;
@@ -152,7 +152,7 @@ std::optional<std::string> bareTable(
     head.said ? head.said : CSVDetectSeperator(std::string(head.header).c_str());
   std::string result;
   const auto put = [&](std::string_view row)
-  { result += head.said ? inQuotes(quotedCells(row, separator)) : std::string(row); };
+  { result += head.said ? csvRow(quotedCells(row, separator)) : std::string(row); };
   const RowCells first = quotedCells(head.header, separator);
   if (const std::string_view names = head.names(first, separator); !names.empty())
   {
@@ -175,7 +175,7 @@ std::optional<std::string> bareTable(
     {
       unclear.push_back(lines.number);
     }
-    if (!isBlank(line))
+    if (!isBlankLine(line))
     {
       put(line);
       ++rows;

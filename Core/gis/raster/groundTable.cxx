@@ -34,11 +34,7 @@ std::string keyOf(const std::string& text)
 
 RestitutionModel modelFrom(const FeatureRow& row, const std::string& text)
 {
-  std::string letters;
-  for (const char c : nameKey(text))
-  {
-    letters += (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ? std::string(1, c) : "";
-  }
+  const std::string letters = letterKey(text);
   if (letters == "0" || letters == "velocity" || letters == "wholevelocity")
   {
     return RestitutionModel::Velocity;

@@ -14,32 +14,18 @@ namespace rockfall::gis
 namespace
 {
 
-/// Letters and digits alone, lowered: "North_American_Vertical_Datum_1988" is as good as EPSG's.
 std::string key(const char* name)
 {
-  std::string result;
-  for (const char c : nameKey(name ? name : ""))
-  {
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'))
-    {
-      result += c;
-    }
-  }
-  return result;
-}
-
-bool isCompound(const OGRSpatialReference& crs)
-{
-  return crs.IsCompound();
+  return letterKey(name ? name : "");
 }
 
 /// Datum of the heights; empty if it is not said.
 std::string datumOf(const OGRSpatialReference& crs)
 {
   const CrsPtr flat = horizontalCrs(&crs);
-  std::string datum = key(isCompound(crs) ? crs.GetAttrValue("COMPD_CS|VERT_CS|VERT_DATUM")
-      : flat                              ? flat->GetAttrValue("DATUM")
-                                          : nullptr);
+  std::string datum = key(crs.IsCompound() ? crs.GetAttrValue("COMPD_CS|VERT_CS|VERT_DATUM")
+      : flat                               ? flat->GetAttrValue("DATUM")
+                                           : nullptr);
   for (const char* nothing : { "unknown", "unnamed", "unspecified", "notspecified" })
   {
     if (datum.starts_with(nothing))
@@ -114,7 +100,7 @@ std::string referenceLabel(const OGRSpatialReference& crs)
 {
   const auto orUnnamed = [](const char* name)
   { return std::string(name && *name ? name : "an unnamed reference"); };
-  if (!isCompound(crs))
+  if (!crs.IsCompound())
   {
     const CrsPtr flat = horizontalCrs(&crs);
     const char* base = flat->GetAttrValue("GEOGCS");
@@ -127,7 +113,7 @@ std::string referenceLabel(const OGRSpatialReference& crs)
 
 bool sameReference(const OGRSpatialReference& one, const OGRSpatialReference& other)
 {
-  return isCompound(one) == isCompound(other) && datumOf(one) == datumOf(other);
+  return one.IsCompound() == other.IsCompound() && datumOf(one) == datumOf(other);
 }
 
 std::string crsWkt(const CrsPtr& horizontal, const CrsPtr& heights)
@@ -137,7 +123,7 @@ std::string crsWkt(const CrsPtr& horizontal, const CrsPtr& heights)
     return horizontal ? crsWkt(*horizontal) : std::string();
   }
   OGRSpatialReference whole(*horizontal);
-  if (!isCompound(*heights))
+  if (!heights->IsCompound())
   {
     whole.PromoteTo3D(nullptr);
     return crsWkt(whole);
