@@ -213,13 +213,8 @@ private:
       piece.born = piece.fall.body().state.time = state.time;
       applyBroken(piece.fall.fall(), gone_);
       this->sinkWith(parts_[number]->fall.fall(), piece.fall.fall());
-      const bool met = bornAtBarrier(piece.fall.fall(), state.position);
-      piece.fall.begin();
-      if (met && !piece.fall.done())
-      {
-        meetBarrier(piece.fall.fall());
-        this->share(parts_.size() - 1);
-      }
+      piece.fall.beginAsPiece(state.position);
+      this->share(parts_.size() - 1);
       BlockState moving = state;
       moving.velocity = rock.velocity;
       mass -= piece.block.mass();

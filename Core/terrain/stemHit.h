@@ -17,6 +17,10 @@
 /// rock's: with more than E there the stem breaks; with less it stands, and the rock slips past
 /// along it, turned by arccos o.
 ///
+/// A stem pushes square to its axis, and takes nothing of what a rock has along it; what comes down on
+/// its top, or on an end of one that lies, it pushes back. Whether it breaks is asked of all of the
+/// energy, as the law has it of rocks that come along slopes.
+///
 /// A lying stem has the ground behind it, and nothing slips past below: it breaks by the same rule,
 /// and takes the same share; with less towards its axis it stands, and is an obstacle from which a
 /// rock rebounds or over which it rolls. Its offset is square to its axis and the rock's way: a

@@ -186,10 +186,11 @@ void World::advanceAll(double until)
       const std::span<const int> rocks = k < islands.size()
         ? std::span<const int>(islands[std::size_t(order_[k])].members)
         : std::span<const int>(&alone[k - islands.size()], 1);
+      const double speed = world_.speedFor(rocks);
       double time = std::numeric_limits<double>::infinity();
       for (const int i : rocks)
       {
-        time = std::min(time, world_.timeToBarrier(i, until - world_.time));
+        time = std::min(time, world_.timeToBarrier(i, speed, until - world_.time));
       }
       meets[k] = std::isfinite(time);
       if (meets[k])

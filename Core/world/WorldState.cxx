@@ -42,29 +42,40 @@ bool FallingRock::adoptEnd()
   return there;
 }
 
-double WorldState::timeToBarrier(int rock, double duration) const
+double WorldState::speedFor(std::span<const int> members) const
 {
-  const SingleRock& of = rocks[std::size_t(rock)].sim;
-  double soonest = std::numeric_limits<double>::infinity();
-  if (of.done() || !(of.state().velocity.norm() > 0.0))
+  double fastest = 0.0;
+  for (const int i : members)
   {
-    return soonest;
+    const RockBody& body = rocks[std::size_t(i)].body();
+    const double rim = body.state.spin.norm() * body.block.radius();
+    fastest = std::max(fastest, body.done ? 0.0 : body.state.velocity.norm() + rim);
   }
+  return 2.0 * fastest;
+}
+
+double WorldState::timeToBarrier(int rock, double speed, double duration) const
+{
+  const RockBody& body = rocks[std::size_t(rock)].body();
   const Obstacles& obstacles = *surface.terrain().obstacles();
-  const Eigen::Vector2d at = of.state().position.head<2>();
-  const double speed = kFasterApproach * of.state().velocity.norm() + parameters.gravity * duration;
-  const double around = speed * duration + of.body().block.radius(); // that far past an end, too
+  const Eigen::Vector2d at = body.state.position.head<2>(),
+                        velocity = body.state.velocity.head<2>();
+  const double way = (speed + parameters.gravity * duration) * duration;
+  const double around = way + body.block.radius(); // that far past an end, too
+  double soonest = std::numeric_limits<double>::infinity();
   obstacles.visitBarriers(at.x() - around, at.x() + around, at.y() - around, at.y() + around,
     [&](const Obstacles::Piece& piece)
     {
-      if (obstacles.structures().barriers[std::size_t(piece.barrier)].records)
+      const Eigen::Vector2d along = piece.to - piece.from;
+      const double part = std::clamp(along.dot(at - piece.from) / along.squaredNorm(), 0.0, 1.0);
+      if (obstacles.structures().barriers[std::size_t(piece.barrier)].records ||
+        (piece.from + part * along - at).norm() > around)
       {
         return;
       }
-      const Eigen::Vector2d along = piece.to - piece.from;
-      const double part = std::clamp(along.dot(at - piece.from) / along.squaredNorm(), 0.0, 1.0);
-      const double way = (piece.from + part * along - at).norm();
-      soonest = way <= around ? std::min(soonest, way / speed) : soonest;
+      const Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
+      const double arrival = -normal.dot(at - piece.from) / normal.dot(velocity);
+      soonest = std::min(soonest, arrival >= 0.0 ? std::min(arrival, duration) : duration);
     });
   return soonest;
 }
@@ -78,12 +89,13 @@ void WorldState::shareBarriers(FallingRock& rock)
     load.energy += held.energy;
     load.volume += held.volume;
   }
+  if (now.barriers.empty())
+  {
+    return;
+  }
   for (FallingRock& other : rocks)
   {
-    if (!now.barriers.empty())
-    {
-      applyBroken(other.fall(), now);
-    }
+    applyBroken(other.fall(), now);
   }
 }
 

@@ -1,6 +1,8 @@
 #include "rock/fall/SingleRock.h"
 
+#include "block/flight.h"
 #include "contact/ground/detection.h"
+#include "rock/fall/atStructures.h"
 #include "rock/fall/contactPhase.h"
 #include "rock/fall/endOfFall.h"
 #include "rock/fall/flightPhase.h"
@@ -66,6 +68,38 @@ void SingleRock::begin()
   summary.volume = fall_.body.block.volume();
   fall_.recorder.begin(fall_.body);
   checkEnd(fall_, 0.0);
+}
+
+void SingleRock::beginAsPiece(const Vec3& whole)
+{
+  RockBody& body = fall_.body;
+  const BlockState born = body.state;
+  BlockState from = born;
+  from.position = whole;
+  const Way way{ from, born, 0.0, false };
+  double taken = 0.0;
+  const auto meets = [&] { return passBarriers(fall_, way, taken); };
+  const auto line = [&] { return between(from, born, fall_.structures.hit().fraction).position; };
+  if (fall_.structures.hasBarriers())
+  {
+    fall_.structures.findBarriers(way, fall_.parameters.gravity, body.block.radius());
+  }
+  bool met = fall_.structures.hasBarriers() && meets();
+  body.state.position = met && holdsAtBarrier(fall_) ? line() : born.position;
+  this->begin();
+  while (met && !body.done)
+  {
+    meetBarrier(fall_);
+    taken += this->trajectory().structures.back().energyTaken;
+    met = !body.done && meets();
+    if (met && holdsAtBarrier(fall_))
+    {
+      // The way to where it was born did not happen.
+      body.energy.structures +=
+        body.block.mass() * fall_.parameters.gravity * (body.state.position - line()).z();
+      body.state.position = line();
+    }
+  }
 }
 
 bool SingleRock::hasSampleAt(double enough) const

@@ -31,6 +31,9 @@ public:
   /// Straight up, at the start, as far as roughness and embankments make it needed.
   void liftOntoGround();
   void begin(); ///< From where it stands.
+  /// Likewise a piece of a rock whose centre was at `whole`: it meets the barriers between. One that
+  /// holds it has it at its line.
+  void beginAsPiece(const Vec3& whole);
   /// Up to this time (s) or to the end; `enough` as in `run`.
   void advance(double until, double enough = std::numeric_limits<double>::infinity());
   void wake(double time); ///< Goes on after an end, from this time on, s.

@@ -197,29 +197,12 @@ void meetBarrier(Fall& fall)
   fall.recorder.knot(body, false);
 }
 
-bool bornAtBarrier(Fall& fall, const Vec3& whole)
+bool holdsAtBarrier(const Fall& fall)
 {
-  if (!fall.structures.hasBarriers())
-  {
-    return false;
-  }
-  RockBody& body = fall.body;
-  BlockState from = body.state;
-  from.position = whole;
-  const Way way{ from, body.state, 0.0, false };
-  fall.structures.findBarriers(way, fall.parameters.gravity, body.block.radius());
-  if (!passBarriers(fall, way, 0.0))
-  {
-    return false;
-  }
   const BarrierHit& hit = fall.structures.hit();
   const BarrierState net =
     stateOf(fall.structures.barrierHit(), fall.structures.loadOf(hit.barrier));
-  if (rigidKineticEnergy(body.block, body.state) + hit.stored <= net.capacity)
-  {
-    body.state.position = between(from, body.state, hit.fraction).position;
-  }
-  return true;
+  return rigidKineticEnergy(fall.body.block, fall.body.state) + hit.stored <= net.capacity;
 }
 
 double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool touching)

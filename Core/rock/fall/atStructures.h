@@ -33,10 +33,8 @@ bool applyBroken(Fall& fall, const StructuresOnWay::Broken& broken);
 
 /// Goes on along this way, on which barriers have taken so much so far (J); whether it hits one.
 bool passBarriers(Fall& fall, const Way& way, double taken);
-/// Whether a piece that is about to begin is behind a barrier that its rock, with its centre at
-/// `whole`, was before: it hits it. One that can hold it has it at its line.
-bool bornAtBarrier(Fall& fall, const Vec3& whole);
-void meetBarrier(Fall& fall); ///< The one that it hits, where the rock is.
+bool holdsAtBarrier(const Fall& fall); ///< The one that it hits can hold it.
+void meetBarrier(Fall& fall);          ///< The one that it hits, where the rock is.
 /// The one that it hits, in a step of contact that would go to `end` and in which others have taken
 /// so much (J); returns what this one takes if it breaks.
 double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool touching);

@@ -63,64 +63,68 @@ double reachAgainst(const Block& block, const BlockState& state, const Vec3& sid
   return reach;
 }
 
-/// The offset is that of the rock's way from the axis, square to both; from the end of the axis
-/// where they pass each other beyond it, as for a rock that comes along the stem.
-StemHit hitOnLying(const LyingStem& stem, const Block& block, const BlockState& state)
+/// A stem from end to end, against which a rock comes. A standing one has no lower end to be hit.
+struct StemAxis
 {
-  if (!(state.velocity.norm() > 0.0))
+  Vec3 from, to;
+  double radius; ///< m
+  bool lies;
+};
+
+StemAxis axisOf(const Obstacles& obstacles, int tree)
+{
+  if (const LyingStem* lying = obstacles.lyingOf(tree))
   {
-    return {};
+    return { lying->from, lying->to, lying->radius, true };
   }
+  const Tree& stem = obstacles.structures().trees[std::size_t(tree)];
+  const Vec3 top(stem.position.x(), stem.position.y(), obstacles.treeTop(tree));
+  return { top - stem.height * Vec3::UnitZ(), top, 0.5 * stem.diameter, false };
+}
+
+/// The offset is that of the rock's way from the axis, square to both. What comes along the stem, with
+/// its centre beyond an end and towards it, hits that end: the offset is from there, and nothing of
+/// the velocity is along.
+StemHit hitOn(const Obstacles& obstacles, int tree, const Block& block, const BlockState& state)
+{
+  const StemAxis stem = axisOf(obstacles, tree);
   const double length = (stem.to - stem.from).norm();
   const Vec3 axis = (stem.to - stem.from) / length;
   const Vec3 off = state.position - stem.from;
-  const double forth = axis.dot(state.velocity);
+  const double place = axis.dot(off), forth = axis.dot(state.velocity);
   const Vec3 across = state.velocity - forth * axis;
-  const double time = across.squaredNorm() > 0.0 ? -across.dot(off) / across.squaredNorm() : 0.0;
-  const double nearest =
-    across.squaredNorm() > 0.0 ? axis.dot(off) + time * forth : (forth > 0.0 ? -1.0 : length + 1.0);
-  const bool within = nearest >= 0.0 && nearest <= length;
-  const Vec3 along = (within ? across : state.velocity).normalized();
+  const bool passes = across.squaredNorm() > 0.0;
+  const double time = passes ? -across.dot(off) / across.squaredNorm() : 0.0;
+  double nearest = place + time * forth; // where they pass each other, along the axis
+  bool onEnd = place > length && forth < 0.0;
+  if (stem.lies)
+  {
+    onEnd = onEnd || (place < 0.0 && forth > 0.0) || !passes || nearest < 0.0 || nearest > length;
+    nearest = place < 0.0 ? 0.0 : place > length ? length : nearest;
+  }
+  else
+  {
+    nearest = onEnd ? length : place;
+  }
+  const Vec3 way = onEnd ? state.velocity : across;
+  const Vec3 fixed = onEnd ? Vec3::Zero() : axis;
+  if (!(way.squaredNorm() > 0.0))
+  {
+    return { 0.0, Vec3::Zero(), Vec3::Zero(), fixed };
+  }
+  const Vec3 along = way.normalized();
   Vec3 side = state.position - (stem.from + std::clamp(nearest, 0.0, length) * axis);
-  side -= within ? Vec3(axis.dot(side) * axis) : Vec3::Zero();
+  side -= fixed.dot(side) * fixed;
   side -= along.dot(side) * along;
   const double distance = side.norm();
   if (!(distance > 0.0))
   {
-    return { 0.0, -along, along, within ? axis : Vec3::Zero() };
+    return { 0.0, -along, along, fixed };
   }
   side /= distance;
   const double offset = std::min(1.0, distance / (reachAgainst(block, state, side) + stem.radius));
   const double towards = std::sqrt(1.0 - offset * offset);
-  return { offset, offset * side - towards * along, towards * side + offset * along,
-    within ? axis : Vec3::Zero() };
-}
-
-StemHit hitOn(const Obstacles& obstacles, int tree, const Block& block, const BlockState& state)
-{
-  if (const LyingStem* lying = obstacles.lyingOf(tree))
-  {
-    return hitOnLying(*lying, block, state);
-  }
-  const Tree& stem = obstacles.structures().trees[std::size_t(tree)];
-  const double speed = state.velocity.head<2>().norm();
-  if (!(speed > 0.0))
-  {
-    return { 0.0, Vec3::Zero(), Vec3::Zero(), Vec3::UnitZ() };
-  }
-  const Vec3 along(state.velocity.x() / speed, state.velocity.y() / speed, 0.0);
-  Vec3 side(-along.y(), along.x(), 0.0); // on which the rock passes
-  double distance = side.head<2>().dot(state.position.head<2>() - stem.position);
-  if (distance < 0.0)
-  {
-    side = -side;
-    distance = -distance;
-  }
-  const double reach = reachAgainst(block, state, side);
-  const double offset = std::min(1.0, distance / (reach + 0.5 * stem.diameter));
-  const double towards = std::sqrt(1.0 - offset * offset);
-  return { offset, offset * side - towards * along, towards * side + offset * along,
-    Vec3::UnitZ() };
+  return { offset, offset * side - towards * along, towards * side + offset * along, fixed };
 }
 
 /// The state without its velocity along the axis of a stem, which no push of it changes.

@@ -265,6 +265,64 @@ TEST(BrokenStructures, AStemTakesNothingOfAFallAlongIt)
   }
 }
 
+/// Of what comes down on its top it takes its capacity.
+TEST(BrokenStructures, AStumpTakesItsCapacityOfWhatFallsOnIt)
+{
+  for (const double aside : { 0.0, 0.5 })
+  {
+    Structures s = stem({ 60.0, 50.0 }, 250e3);
+    s.trees[0].height = 3.0;
+    const Vec3 velocity(aside, 0.0, -28.0); // 980 kJ
+    const std::vector<Trajectory> runs =
+      runTogether(s, { thrown(velocity, 0.05, 0, { 60.0, 50.0, 104.0 }) });
+    ASSERT_EQ(runs[0].structures.size(), 1u) << aside;
+    EXPECT_EQ(runs[0].structures[0].outcome, StructureOutcome::TreeBroken);
+    EXPECT_NEAR(runs[0].structures[0].energyTaken, 0.98 * 250e3, 0.01 * 250e3) << aside;
+  }
+}
+
+/// A light rock at rest before a net, which a heavy one drives into it, and a third one that comes on
+/// its own: all in one step.
+TEST(BrokenStructures, WhoIsDrivenIntoANetLoadsItForTheNext)
+{
+  Structures s = net(250e3);
+  s.barriers[0].residual = 1.0;
+  for (const double gap : { 0.03, 0.05, 0.07 })
+  {
+    Rock light = brick(Vec3(0.8, 0.8, 0.8), Vec3(59.6 - gap + 0.4, 40.0, 100.4), 0);
+    Rock heavy = brick(Vec3(3, 3, 3), Vec3(light.position.x() - 0.4 - 1.5 - 0.02, 40.0, 101.5), 1);
+    heavy.velocity = Vec3(20.0, 0.0, 0.0);
+    const std::vector<Trajectory> runs =
+      runTogether(s, { light, heavy, thrown({ 13.0, 0.0, 0.0 }, 0.004, 2) });
+    double held = 0.0;
+    for (const Trajectory& run : runs)
+    {
+      for (const StructureEvent& event : run.structures)
+      {
+        held += event.outcome == StructureOutcome::BarrierStopped ? event.energyTaken : 0.0;
+      }
+    }
+    EXPECT_GT(held, 0.0) << gap;
+    EXPECT_LE(held, 250e3) << gap;
+  }
+}
+
+/// One that comes obliquely is nearer to the net, and later there.
+TEST(BrokenStructures, WhoComesFirstMeetsANetFirst)
+{
+  Structures s = net(300e3);
+  s.barriers[0].residual = 1.0;
+  Rock oblique = thrown(Vec3(2.6, -14.8, 0.0), 0.0043, 0, Vec3(60, 40, 103));
+  Rock square = thrown(Vec3(15.0, 0.0, 0.0), 0.0015, 1, Vec3(60, 50, 103));
+  for (const bool first : { true, false })
+  {
+    const std::vector<Trajectory> runs = runTogether(
+      s, first ? std::vector<Rock>{ oblique, square } : std::vector<Rock>{ square, oblique });
+    EXPECT_EQ(runs[first ? 1 : 0].summary.fate, Fate::Caught);
+    EXPECT_EQ(runs[first ? 0 : 1].structures.at(0).outcome, StructureOutcome::BarrierBroken);
+  }
+}
+
 TEST(BrokenStructures, TreeIsGoneForTheNext)
 {
   const Structures one = stem({ 60.0, 50.0 }, 350e3);

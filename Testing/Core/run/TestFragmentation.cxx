@@ -12,6 +12,7 @@
 #include "statistics/HazardRaster.h"
 #include "statistics/crossings.h"
 #include "summarizePassages.h"
+#include "terrain/Obstacles.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>
@@ -466,6 +467,37 @@ TEST(Fragmentation, ANetHoldsPiecesThatAreBornBehindIt)
         all[k].structures.size() == 1 && all[k].samples.front().time == all[k].structures[0].time;
     }
     EXPECT_GT(held, 0) << ahead;
+  }
+}
+
+/// Through a weak net on the line of a strong one, or just before it, no piece comes.
+TEST(Fragmentation, PiecesThatAreBornBehindTwoNetsMeetBoth)
+{
+  const Rock rock = thrownDown(12.0);
+  Fragmentation law = lawOf(50e3, 5e-3);
+  law.spread = radians(30.0);
+  const double breaks = runOf(flatGround(), { rock }, law)[0].summary.stop.x();
+  for (const double apart : { 0.0, 0.1 })
+  {
+    Terrain terrain = withNet(1.0, breaks + 0.02);
+    Structures s = terrain.obstacles()->structures();
+    Barrier strong = s.barriers[0];
+    strong.feature = 2;
+    strong.points = { { breaks + 0.02 + apart, 10.0 }, { breaks + 0.02 + apart, 190.0 } };
+    strong.capacity = 1e12;
+    s.barriers.push_back(strong);
+    terrain = flatGround();
+    terrain.setStructures(s);
+    const auto all = runOf(terrain, { rock }, law);
+    int both = 0;
+    for (std::size_t k = 1; k < all.size(); ++k)
+    {
+      const TrajectorySummary& summary = all[k].summary;
+      EXPECT_LT(summary.stop.x(), strong.points[0].x() + 1e-6) << k << ' ' << apart;
+      EXPECT_NEAR(summary.energy.numerical, 0.0, 1e-6 * all[0].summary.maxKineticEnergy);
+      both += all[k].structures.size() == 2;
+    }
+    EXPECT_GT(both, 0) << apart;
   }
 }
 
