@@ -91,12 +91,7 @@ void IslandStepper::advance(double until, bool atBarrier)
   work_.turns.clear();
   if (atBarrier)
   {
-    const double speed = world_.speedFor(island_.members);
-    std::vector<double> times;
-    for (const int i : island_.members)
-    {
-      times.push_back(world_.timeToBarrier(i, speed, until - world_.time));
-    }
+    const std::vector<double> times = world_.timesToBarriers(island_.members, until - world_.time);
     work_.turns.resize(times.size());
     std::iota(work_.turns.begin(), work_.turns.end(), std::size_t(0));
     std::ranges::stable_sort(work_.turns, {}, [&](std::size_t m) { return times[m]; });

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace rockfall
@@ -153,66 +152,73 @@ void World::step(double until)
 
 void World::advanceAll(double until)
 {
-  const std::vector<Island>& islands = islandFinder_->islands();
-  const std::vector<int>& alone = islandFinder_->alone();
   // The largest first: they take longest.
+  const std::vector<Island>& islands = islandFinder_->islands();
   order_.resize(islands.size());
   std::iota(order_.begin(), order_.end(), 0);
   std::stable_sort(order_.begin(), order_.end(),
     [&](int a, int b)
     { return islands[std::size_t(a)].members.size() > islands[std::size_t(b)].members.size(); });
-  const auto advanceOne = [&](std::size_t k, bool atBarrier)
-  {
-    if (k < islands.size())
-    {
-      IslandStepper(world_, islands[std::size_t(order_[k])]).advance(until, atBarrier);
-      return;
-    }
-    FallingRock& rock = world_.rocks[std::size_t(alone[k - islands.size()])];
-    rock.advanceAlone(until);
-    isStill(world_, rock); // to know when it comes back to an island
-    if (atBarrier)
-    {
-      world_.shareBarriers(rock);
-    }
-  };
-  const std::size_t count = islands.size() + alone.size();
-  std::vector<char> meets(count);
-  atBarriers_.clear();
-  if (!world_.barrierLoads.empty())
-  {
-    for (std::size_t k = 0; k < count; ++k)
-    {
-      const std::span<const int> rocks = k < islands.size()
-        ? std::span<const int>(islands[std::size_t(order_[k])].members)
-        : std::span<const int>(&alone[k - islands.size()], 1);
-      const double speed = world_.speedFor(rocks);
-      double time = std::numeric_limits<double>::infinity();
-      for (const int i : rocks)
-      {
-        time = std::min(time, world_.timeToBarrier(i, speed, until - world_.time));
-      }
-      meets[k] = std::isfinite(time);
-      if (meets[k])
-      {
-        atBarriers_.emplace_back(time, k);
-      }
-    }
-  }
-  forEach(count, 1,
+  this->findAtBarriers(until - world_.time);
+  forEach(waits_.size(), 1,
     [&](std::size_t k)
     {
-      if (!meets[k])
+      if (!waits_[k])
       {
-        advanceOne(k, false);
+        this->advanceOne(k, until);
       }
     });
   // What one of them leaves of a barrier the next one meets.
-  std::sort(atBarriers_.begin(), atBarriers_.end());
   for (const auto& [time, k] : atBarriers_)
   {
-    advanceOne(k, true);
+    this->advanceOne(k, until);
   }
+}
+
+std::span<const int> World::unit(std::size_t k) const
+{
+  const std::vector<Island>& islands = islandFinder_->islands();
+  return k < islands.size()
+    ? std::span<const int>(islands[std::size_t(order_[k])].members)
+    : std::span<const int>(islandFinder_->alone()).subspan(k - islands.size(), 1);
+}
+
+void World::advanceOne(std::size_t k, double until)
+{
+  const std::vector<Island>& islands = islandFinder_->islands();
+  if (k < islands.size())
+  {
+    IslandStepper(world_, islands[std::size_t(order_[k])]).advance(until, waits_[k] != 0);
+    return;
+  }
+  FallingRock& rock = world_.rocks[std::size_t(this->unit(k).front())];
+  rock.advanceAlone(until);
+  isStill(world_, rock); // to know when it comes back to an island
+  if (waits_[k])
+  {
+    world_.shareBarriers(rock);
+  }
+}
+
+void World::findAtBarriers(double duration)
+{
+  waits_.assign(islandFinder_->islands().size() + islandFinder_->alone().size(), 0);
+  atBarriers_.clear();
+  if (world_.barrierLoads.empty())
+  {
+    return;
+  }
+  for (std::size_t k = 0; k < waits_.size(); ++k)
+  {
+    const std::vector<double> times = world_.timesToBarriers(this->unit(k), duration);
+    const double soonest = *std::min_element(times.begin(), times.end());
+    waits_[k] = std::isfinite(soonest);
+    if (waits_[k])
+    {
+      atBarriers_.emplace_back(soonest, k);
+    }
+  }
+  std::sort(atBarriers_.begin(), atBarriers_.end());
 }
 
 void World::settle(double before)

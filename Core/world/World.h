@@ -21,6 +21,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace rockfall
@@ -60,14 +61,18 @@ public:
 private:
   void step(double until);
   void advanceAll(double until); ///< Islands, and rocks that meet no other, on all threads.
-  void shareBroken();            ///< Trees and barriers.
-  void settle(double before);    ///< Islands of a step that began at this time, s.
+  /// Units go on by themselves: islands as in `order_`, and behind them rocks that meet no other.
+  std::span<const int> unit(std::size_t k) const;
+  void advanceOne(std::size_t k, double until);
+  void findAtBarriers(double duration);
+  void shareBroken();         ///< Trees and barriers.
+  void settle(double before); ///< Islands of a step that began at this time, s.
 
   WorldState world_;
   std::unique_ptr<IslandFinder> islandFinder_; ///< None if rocks hit no other.
-  std::vector<int> order_; ///< Islands in the order in which they are gone over.
-  /// Islands and, behind them, rocks alone that may meet a barrier in the step, by when.
-  std::vector<std::pair<double, std::size_t>> atBarriers_;
+  std::vector<int> order_;  ///< Islands in the order in which they are gone over.
+  std::vector<char> waits_; ///< Of each unit, whether it may meet a barrier in the step.
+  std::vector<std::pair<double, std::size_t>> atBarriers_; ///< Those units, by when.
 };
 
 } // namespace rockfall

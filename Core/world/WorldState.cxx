@@ -42,25 +42,16 @@ bool FallingRock::adoptEnd()
   return there;
 }
 
-double WorldState::speedFor(std::span<const int> members) const
+namespace
 {
-  double fastest = 0.0;
-  for (const int i : members)
-  {
-    const RockBody& body = rocks[std::size_t(i)].body();
-    const double rim = body.state.spin.norm() * body.block.radius();
-    fastest = std::max(fastest, body.done ? 0.0 : body.state.velocity.norm() + rim);
-  }
-  return 2.0 * fastest;
-}
 
-double WorldState::timeToBarrier(int rock, double speed, double duration) const
+/// Of a rock that may be this fast (m/s).
+double timeToBarrier(const WorldState& world, const RockBody& body, double speed, double duration)
 {
-  const RockBody& body = rocks[std::size_t(rock)].body();
-  const Obstacles& obstacles = *surface.terrain().obstacles();
-  const Eigen::Vector2d at = body.state.position.head<2>(),
-                        velocity = body.state.velocity.head<2>();
-  const double way = (speed + parameters.gravity * duration) * duration;
+  const Obstacles& obstacles = *world.surface.terrain().obstacles();
+  const Eigen::Vector2d at = body.state.position.head<2>();
+  const Eigen::Vector2d velocity = body.state.velocity.head<2>();
+  const double way = (speed + world.parameters.gravity * duration) * duration;
   const double around = way + body.block.radius(); // that far past an end, too
   double soonest = std::numeric_limits<double>::infinity();
   obstacles.visitBarriers(at.x() - around, at.x() + around, at.y() - around, at.y() + around,
@@ -78,6 +69,26 @@ double WorldState::timeToBarrier(int rock, double speed, double duration) const
       soonest = std::min(soonest, arrival >= 0.0 ? std::min(arrival, duration) : duration);
     });
   return soonest;
+}
+
+} // namespace
+
+std::vector<double> WorldState::timesToBarriers(std::span<const int> members, double duration) const
+{
+  double fastest = 0.0;
+  for (const int i : members)
+  {
+    const RockBody& body = rocks[std::size_t(i)].body();
+    const double rim = body.state.spin.norm() * body.block.radius();
+    fastest = std::max(fastest, body.done ? 0.0 : body.state.velocity.norm() + rim);
+  }
+  std::vector<double> times;
+  for (const int i : members)
+  {
+    // A light rock that the fastest strikes leaves at twice its speed.
+    times.push_back(timeToBarrier(*this, rocks[std::size_t(i)].body(), 2.0 * fastest, duration));
+  }
+  return times;
 }
 
 void WorldState::shareBarriers(FallingRock& rock)

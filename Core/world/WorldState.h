@@ -105,12 +105,9 @@ struct WorldState
   std::vector<BarrierLoad> barrierLoads; ///< What each barrier has held so far.
   double time = 0.0;                     ///< s
 
-  /// As fast as any of these may become by striking each other, m/s: a light one that the fastest
-  /// strikes leaves at twice its speed.
-  double speedFor(std::span<const int> members) const;
-  /// When a rock meets a barrier that does not only record, if it goes on as it moves, at most
-  /// `duration`; ∞ if it cannot within that time, at up to this speed. s, m/s.
-  double timeToBarrier(int rock, double speed, double duration) const;
+  /// When each of these rocks meets a barrier that does not only record, if it goes on as it moves, at
+  /// most `duration`; ∞ if it cannot within that time, however they strike each other. s.
+  std::vector<double> timesToBarriers(std::span<const int> members, double duration) const;
   /// Barriers that a rock has loaded or broken are so for all others, at once.
   void shareBarriers(FallingRock& rock);
 };
