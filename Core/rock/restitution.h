@@ -10,11 +10,8 @@
 
 #include "law/restitution.h"
 #include "law/settings.h"
-#include "law/springs.h"
 #include "rock/results.h"
 #include "terrain/Terrain.h"
-
-#include <cmath>
 
 namespace rockfall
 {

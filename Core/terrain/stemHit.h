@@ -3,7 +3,7 @@
 /// @file
 /// Share of a stem's energy that a hit beside its middle takes.
 ///
-/// Offset o of a hit: the distance of the rock's way from the stem's axis, in plan, over the
+/// Offset o of a hit: the distance of the rock's way from the stem's axis, square to both, over the
 /// largest at which it still touches: the rock's reach towards the stem, across its way, and the
 /// stem's radius; 0 in the middle, 1 a graze. For a round rock that is the offset of the touch from
 /// the axis in radii of the stem, as the law has it.

@@ -14,7 +14,6 @@
 #include "world/stepLayout.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <vector>
 

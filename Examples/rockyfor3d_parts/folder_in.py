@@ -206,7 +206,7 @@ def convert(source, target, iterations, per, seed):
         raise Bad(f"--iterations is {iterations}, it must be at least 1")
     if os.path.samefile(source, target):
         raise Bad(f"{target} is the folder of the rasters: take another one")
-    with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=target) as made:
+    with tempfile.TemporaryDirectory(prefix=".rockyfor3d-", dir=target) as made:
         notes = make(source, made, iterations, per, seed)
         names = sorted(os.listdir(made))
         for name in (*names, *NOT_ALWAYS):  # whether it is of an earlier study or somebody's own, nobody knows

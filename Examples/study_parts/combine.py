@@ -61,7 +61,7 @@ def check_whole(path):
         try:
             with zipfile.ZipFile(path) as archive:
                 good = archive.testzip() is None
-        except (ValueError, EOFError, zipfile.BadZipFile, zlib.error):
+        except (ValueError, EOFError, RuntimeError, zipfile.BadZipFile, zlib.error):
             good = False
     elif path.endswith(".vtp"):
         good = wholefile.ends_as_xml(path)

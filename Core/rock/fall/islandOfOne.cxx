@@ -8,9 +8,6 @@
 #include "rock/restitution.h"
 #include "solve/island/SoftSolver.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace rockfall
 {
 

@@ -15,11 +15,6 @@
 namespace rockfall
 {
 
-namespace
-{
-
-} // namespace
-
 double heightOverGround(const Surface& surface, const Block& block, const BlockState& state)
 {
   double lowest = std::numeric_limits<double>::infinity();

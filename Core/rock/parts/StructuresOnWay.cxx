@@ -41,11 +41,12 @@ StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Blo
 namespace
 {
 
-/// A hit on a stem: in plan if it stands, square to its axis if it lies.
+/// A hit on a stem: square to its axis, or against its end.
 struct StemHit
 {
-  double offset = 0.0;       ///< See terrain/stemHit.h.
-  Vec3 away = Vec3::Zero();  ///< Of the stem's push on the rock; zero if the rock moves upright.
+  double offset = 0.0; ///< See terrain/stemHit.h.
+  Vec3 away =
+    Vec3::Zero(); ///< Of the stem's push on the rock; zero if the rock does not move across.
   Vec3 along = Vec3::Zero(); ///< Of the rock that slips past the stem.
   Vec3 axis = Vec3::Zero();  ///< The stem pushes square to it; zero: against its end.
 };
@@ -82,9 +83,9 @@ StemAxis axisOf(const Obstacles& obstacles, int tree)
   return { top - stem.height * Vec3::UnitZ(), top, 0.5 * stem.diameter, false };
 }
 
-/// The offset is that of the rock's way from the axis, square to both. What comes along the stem, with
-/// its centre beyond an end and towards it, hits that end: the offset is from there, and nothing of
-/// the velocity is along.
+/// The offset is that of the rock's way from the axis, square to both. What comes with its centre
+/// beyond an end and towards it, or passes the axis of a lying stem beyond its ends, hits that end:
+/// the offset is from there, and nothing of the velocity is along.
 StemHit hitOn(const Obstacles& obstacles, int tree, const Block& block, const BlockState& state)
 {
   const StemAxis stem = axisOf(obstacles, tree);
@@ -164,14 +165,14 @@ void pushAway(BlockState& state, const Block& block, const StemHit& hit, double 
   }
 }
 
-/// Takes kinetic energy (J) and turns the velocity in plan to where it slips past; spin is left. What
-/// the velocity in plan does not have slows all down that the stem can act on.
+/// Takes kinetic energy (J) and turns the velocity across the stem to where it slips past; spin is left.
+/// What that velocity does not have slows all down that the stem can act on.
 void slipPast(BlockState& state, const Block& block, const StemHit& hit, double taken)
 {
   const double energy = rigidKineticEnergy(block, state);
-  const double inPlan = state.velocity.head<2>().squaredNorm();
-  state.velocity.head<2>() =
-    std::sqrt(std::max(0.0, inPlan - 2.0 * taken / block.mass())) * hit.along.head<2>();
+  const Vec3 across = acrossOf(hit, state).velocity, forth = state.velocity - across;
+  state.velocity =
+    forth + std::sqrt(std::max(0.0, across.squaredNorm() - 2.0 * taken / block.mass())) * hit.along;
   const double more = taken - (energy - rigidKineticEnergy(block, state));
   if (more > 1e-12 * energy)
   {

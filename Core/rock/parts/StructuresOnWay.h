@@ -76,7 +76,7 @@ public:
   void passTree(int tree, double held, RockBody& body, std::vector<StructureEvent>& events);
 
   // Barriers
-  /// What barriers have held in this fall, by number; not before a step is over.
+  /// What barriers have held in this fall, by number.
   void setBarrierLoads(const std::vector<BarrierLoad>* loads) { barrierLoads_ = loads; }
   BarrierLoad loadOf(int barrier) const;
   /// Finds those whose line is passed, or its straight continuation as near to an end as the rock

@@ -281,6 +281,27 @@ TEST(BrokenStructures, AStumpTakesItsCapacityOfWhatFallsOnIt)
   }
 }
 
+/// Beside its middle it lets the rock slip past, and takes what it says.
+TEST(BrokenStructures, AStumpLetsPassWhatFallsBesideItsMiddle)
+{
+  int passed = 0;
+  for (const double beside : { 0.25, 0.35, 0.45, 0.55 })
+  {
+    Structures s = stem({ 60.0, 50.0 }, 800e3);
+    s.trees[0].height = 3.0;
+    const Vec3 velocity(9.0, 0.0, -27.0);
+    const std::vector<Trajectory> runs =
+      runTogether(s, { thrown(velocity, 0.05, 0, { 60.0, 50.0 + beside, 104.0 }) });
+    for (const StructureEvent& event : runs[0].structures)
+    {
+      passed += event.outcome == StructureOutcome::TreePassed;
+      EXPECT_NEAR(runs[0].summary.energy.structures, event.energyTaken, 1e-9 * event.kineticEnergy)
+        << beside;
+    }
+  }
+  EXPECT_GT(passed, 0);
+}
+
 /// A light rock at rest before a net, which a heavy one drives into it, and a third one that comes on
 /// its own: all in one step.
 TEST(BrokenStructures, WhoIsDrivenIntoANetLoadsItForTheNext)
