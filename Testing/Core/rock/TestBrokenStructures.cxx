@@ -144,7 +144,7 @@ TEST(BrokenStructures, WhatANetHoldsLoadsItForTheNext)
 }
 
 /// Ten rocks side by side at a net that holds one: at once, or one after the other within a step,
-/// in the air or as an island, on any number of threads.
+/// in the air or as an island.
 TEST(BrokenStructures, RocksOfOneStepMeetWhatTheOthersLeave)
 {
   for (const double lag : { 0.0, 1e-3, -1e-3 })
