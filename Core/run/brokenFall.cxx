@@ -149,12 +149,7 @@ private:
   void share(std::size_t from)
   {
     StructuresOnWay::Broken now = parts_[from]->fall.fall().structures.drainBroken();
-    for (const auto& [barrier, held] : now.held)
-    {
-      BarrierLoad& load = loads_[std::size_t(barrier)];
-      load.energy += held.energy;
-      load.volume += held.volume;
-    }
+    now.addTo(loads_);
     if (now.trees.empty() && now.barriers.empty())
     {
       return;

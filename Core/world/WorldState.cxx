@@ -94,12 +94,7 @@ std::vector<double> WorldState::timesToBarriers(std::span<const int> members, do
 void WorldState::shareBarriers(FallingRock& rock)
 {
   const StructuresOnWay::Broken now = rock.fall().structures.drainBarriers();
-  for (const auto& [barrier, held] : now.held)
-  {
-    BarrierLoad& load = barrierLoads[std::size_t(barrier)];
-    load.energy += held.energy;
-    load.volume += held.volume;
-  }
+  now.addTo(barrierLoads);
   if (now.barriers.empty())
   {
     return;

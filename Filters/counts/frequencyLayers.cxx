@@ -73,8 +73,8 @@ RockFrequencies frequenciesOf(vtkPolyData* trajectories)
       std::to_string(frequency->GetNumberOfComponents()) + " components, it must have 1");
   }
   RockFrequencies result;
-  vtkDataArray* piece =
-    cells->GetArray("Piece"); // a rock is released once, whatever it breaks into
+  // A rock is released once, whatever it breaks into.
+  vtkDataArray* piece = cells->GetArray("Piece");
   // Polydata's cells begin with its vertices.
   const vtkIdType first = trajectories->GetNumberOfVerts();
   for (vtkIdType line = first; line < first + trajectories->GetNumberOfLines(); ++line)

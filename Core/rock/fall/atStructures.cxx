@@ -152,6 +152,14 @@ bool passBarriers(Fall& fall, const Way& way, double taken)
   return fall.structures.hit().barrier >= 0;
 }
 
+bool holdsAtBarrier(const Fall& fall)
+{
+  const BarrierHit& hit = fall.structures.hit();
+  const BarrierState net =
+    stateOf(fall.structures.barrierHit(), fall.structures.loadOf(hit.barrier));
+  return rigidKineticEnergy(fall.body.block, fall.body.state) + hit.stored <= net.capacity;
+}
+
 void meetBarrier(Fall& fall)
 {
   RockBody& body = fall.body;
@@ -160,7 +168,7 @@ void meetBarrier(Fall& fall)
   const double kinetic = rigidKineticEnergy(body.block, body.state), energy = kinetic + hit.stored;
   const BarrierLoad load = fall.structures.loadOf(hit.barrier);
   const BarrierState net = stateOf(barrier, load);
-  const bool holds = energy <= net.capacity;
+  const bool holds = holdsAtBarrier(fall);
   const double taken = holds ? energy : barrier.absorbs ? net.capacity : 0.0;
   StructureEvent event =
     eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
@@ -195,14 +203,6 @@ void meetBarrier(Fall& fall)
   fall.freeUntil = 0.0;
   body.state.time += kInstant;
   fall.recorder.knot(body, false);
-}
-
-bool holdsAtBarrier(const Fall& fall)
-{
-  const BarrierHit& hit = fall.structures.hit();
-  const BarrierState net =
-    stateOf(fall.structures.barrierHit(), fall.structures.loadOf(hit.barrier));
-  return rigidKineticEnergy(fall.body.block, fall.body.state) + hit.stored <= net.capacity;
 }
 
 double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool touching)

@@ -44,9 +44,8 @@ namespace
 /// A hit on a stem: square to its axis, or against its end.
 struct StemHit
 {
-  double offset = 0.0; ///< See terrain/stemHit.h.
-  Vec3 away =
-    Vec3::Zero(); ///< Of the stem's push on the rock; zero if the rock does not move across.
+  double offset = 0.0;       ///< See terrain/stemHit.h.
+  Vec3 away = Vec3::Zero();  ///< Of the stem's push on the rock; zero if nothing moves across.
   Vec3 along = Vec3::Zero(); ///< Of the rock that slips past the stem.
   Vec3 axis = Vec3::Zero();  ///< The stem pushes square to it; zero: against its end.
 };
@@ -96,17 +95,12 @@ StemHit hitOn(const Obstacles& obstacles, int tree, const Block& block, const Bl
   const Vec3 across = state.velocity - forth * axis;
   const bool passes = across.squaredNorm() > 0.0;
   const double time = passes ? -across.dot(off) / across.squaredNorm() : 0.0;
-  double nearest = place + time * forth; // where they pass each other, along the axis
-  bool onEnd = place > length && forth < 0.0;
-  if (stem.lies)
-  {
-    onEnd = onEnd || (place < 0.0 && forth > 0.0) || !passes || nearest < 0.0 || nearest > length;
-    nearest = place < 0.0 ? 0.0 : place > length ? length : nearest;
-  }
-  else
-  {
-    nearest = onEnd ? length : place;
-  }
+  const double meets = place + time * forth; // where they pass each other, along the axis
+  const bool comesDown = place > length && forth < 0.0;
+  const bool comesUp = place < 0.0 && forth > 0.0;
+  const bool onEnd =
+    comesDown || (stem.lies && (comesUp || !passes || meets < 0.0 || meets > length));
+  const double nearest = stem.lies && place >= 0.0 && place <= length ? meets : place;
   const Vec3 way = onEnd ? state.velocity : across;
   const Vec3 fixed = onEnd ? Vec3::Zero() : axis;
   if (!(way.squaredNorm() > 0.0))
@@ -136,7 +130,8 @@ BlockState acrossOf(const StemHit& hit, const BlockState& state)
   return across;
 }
 
-/// Takes kinetic energy (J) of the velocity across the stem, and of spin if that is not enough.
+/// Takes kinetic energy (J) of the velocity across the stem and of spin: both become smaller by the
+/// same factor.
 void slowAcross(BlockState& state, const Block& block, const StemHit& hit, double taken)
 {
   BlockState across = acrossOf(hit, state);
@@ -320,6 +315,15 @@ void StructuresOnWay::passTree(
 bool StructuresOnWay::isGone(int tree) const
 {
   return std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree);
+}
+
+void StructuresOnWay::Broken::addTo(std::vector<BarrierLoad>& loads) const
+{
+  for (const auto& [barrier, load] : held)
+  {
+    loads[std::size_t(barrier)].energy += load.energy;
+    loads[std::size_t(barrier)].volume += load.volume;
+  }
 }
 
 StructuresOnWay::Broken StructuresOnWay::drainBroken()

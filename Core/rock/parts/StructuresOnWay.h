@@ -98,6 +98,8 @@ public:
   {
     std::vector<int> trees, barriers;
     std::vector<std::pair<int, BarrierLoad>> held;
+
+    void addTo(std::vector<BarrierLoad>& loads) const; ///< What is held, by number of barrier.
   };
   Broken drainBroken();   ///< What it has broken since it was asked last.
   Broken drainBarriers(); ///< The same without trees.

@@ -265,7 +265,7 @@ TEST(BrokenStructures, AStemTakesNothingOfAFallAlongIt)
   }
 }
 
-/// Of what comes down on its top it takes its capacity.
+/// A stump takes its capacity of what comes down on its top.
 TEST(BrokenStructures, AStumpTakesItsCapacityOfWhatFallsOnIt)
 {
   for (const double aside : { 0.0, 0.5 })
@@ -281,7 +281,7 @@ TEST(BrokenStructures, AStumpTakesItsCapacityOfWhatFallsOnIt)
   }
 }
 
-/// Beside its middle it lets the rock slip past, and takes what it says.
+/// A stump that is hit beside its middle lets the rock slip past, and takes what the event says.
 TEST(BrokenStructures, AStumpLetsPassWhatFallsBesideItsMiddle)
 {
   int passed = 0;
@@ -328,7 +328,7 @@ TEST(BrokenStructures, WhoIsDrivenIntoANetLoadsItForTheNext)
   }
 }
 
-/// One that comes obliquely is nearer to the net, and later there.
+/// A rock that comes obliquely is nearer to the net, and later there.
 TEST(BrokenStructures, WhoComesFirstMeetsANetFirst)
 {
   Structures s = net(300e3);

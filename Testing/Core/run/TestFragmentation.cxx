@@ -12,7 +12,6 @@
 #include "statistics/HazardRaster.h"
 #include "statistics/crossings.h"
 #include "summarizePassages.h"
-#include "terrain/Obstacles.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>
@@ -378,20 +377,31 @@ Rock thrownDown(double speed)
   return rock;
 }
 
-/// Flat ground with a net behind the place where a rock breaks, which is the weaker the more it
-/// has held.
-Terrain withNet(double capacity, double x = 106.0)
+/// A net across the ground, which is the weaker the more it has held.
+Barrier netAt(double x, double capacity)
+{
+  Barrier net;
+  net.feature = 1;
+  net.points = { { x, 10.0 }, { x, 190.0 } };
+  net.height = 30.0;
+  net.capacity = capacity;
+  net.residual = 0.9;
+  return net;
+}
+
+Terrain withNets(const std::vector<Barrier>& nets)
 {
   Terrain terrain = flatGround();
   Structures s;
-  Barrier& b = s.barriers.emplace_back();
-  b.feature = 1;
-  b.points = { { x, 10.0 }, { x, 190.0 } };
-  b.height = 30.0;
-  b.capacity = capacity;
-  b.residual = 0.9;
+  s.barriers = nets;
   terrain.setStructures(s);
   return terrain;
+}
+
+/// Flat ground with a net behind the place where a rock breaks.
+Terrain withNet(double capacity, double x = 106.0)
+{
+  return withNets({ netAt(x, capacity) });
 }
 
 /// Meetings of all pieces with structures, by time.
@@ -479,21 +489,13 @@ TEST(Fragmentation, PiecesThatAreBornBehindTwoNetsMeetBoth)
   const double breaks = runOf(flatGround(), { rock }, law)[0].summary.stop.x();
   for (const double apart : { 0.0, 0.1 })
   {
-    Terrain terrain = withNet(1.0, breaks + 0.02);
-    Structures s = terrain.obstacles()->structures();
-    Barrier strong = s.barriers[0];
-    strong.feature = 2;
-    strong.points = { { breaks + 0.02 + apart, 10.0 }, { breaks + 0.02 + apart, 190.0 } };
-    strong.capacity = 1e12;
-    s.barriers.push_back(strong);
-    terrain = flatGround();
-    terrain.setStructures(s);
-    const auto all = runOf(terrain, { rock }, law);
+    const double weak = breaks + 0.02, strong = weak + apart;
+    const auto all = runOf(withNets({ netAt(weak, 1.0), netAt(strong, 1e12) }), { rock }, law);
     int both = 0;
     for (std::size_t k = 1; k < all.size(); ++k)
     {
       const TrajectorySummary& summary = all[k].summary;
-      EXPECT_LT(summary.stop.x(), strong.points[0].x() + 1e-6) << k << ' ' << apart;
+      EXPECT_LT(summary.stop.x(), strong + 1e-6) << k << ' ' << apart;
       EXPECT_NEAR(summary.energy.numerical, 0.0, 1e-6 * all[0].summary.maxKineticEnergy);
       both += all[k].structures.size() == 2;
     }
