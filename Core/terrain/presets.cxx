@@ -13,28 +13,6 @@ namespace rockfall
 namespace
 {
 
-/// E. Hoek (1987), Rockfall: a program in BASIC for the analysis of rockfalls from slopes,
-/// University of Toronto; the table is said to be in Hoek, Practical Rock Engineering, chapter
-/// Analysis of rockfall hazards. It has no deviations. The numbers are those that are commonly
-/// quoted of it: neither the table nor a text that quotes it was at hand to check them.
-constexpr const char* hoek = "Hoek (1987)";
-/// Basic friction angles of fresh rock, 23° (gneiss, wet) to 38° (basalt, dry): N. Barton & V.
-/// Choubey (1977), The shear strength of rock joints in theory and practice, Rock Mechanics 10,
-/// 1–54; checked as reprinted in Mechanics of Asphalt: Microstructure and Micromechanics,
-/// table 2.5.
-constexpr const char* barton = "Barton & Choubey (1977)";
-/// No published value for rocks on such ground was found.
-constexpr const char* assumed = "assumed";
-
-/// Speeds and jumps of field surveys together with reach angles, as far as they go together:
-/// docs/ground.md, Presets beside field surveys.
-constexpr const char* longSlopes = "assumed: speeds, jumps and reach angles on long slopes";
-
-/// G. Lu, A. Caviezel, M. Christen, Y. Bühler & P. Bartelt (2019), Landslides 16, 2353: an alpine
-/// meadow, M_E 10 to 25 MN/m², C_s 0.1 to 4, friction 0.55 to 2. Which of these, and the rolling
-/// resistance, was chosen on single impacts and run-outs: docs/validation.md.
-constexpr const char* lu = "Lu et al. (2019)";
-
 /// Scars and slip-dependent friction of Lu et al. (2019).
 constexpr YieldingGround yields(
   double modulus, double compaction, double frictionLeast, double rollingResistance)
@@ -107,24 +85,25 @@ constexpr const char* shortOfSteep =
 
 /// The deviations of φ are choices, and those of Hoek's Rn those of a uniform spread of ±10 %.
 constexpr GroundPreset presets[] = {
-  { "rock", "Rock", 0.53, 0.99, 0.031, 30.0, 2.5, holds(0.1), Memory, hoek, barton, assumed,
-    waves(0.05, 2.0), assumed, brakesTwice },
-  { "asphalt", "Asphalt", 0.40, 0.90, 0.023, 33.0, 2.5, holds(0.05), Memory, hoek, assumed, assumed,
-    smooth, assumed, brakesTwice },
+  { "rock", "Rock", 0.53, 0.99, 0.031, 30.0, 2.5, holds(0.1), Memory, waves(0.05, 2.0),
+    brakesTwice },
+  { "asphalt", "Asphalt", 0.40, 0.90, 0.023, 33.0, 2.5, holds(0.05), Memory, smooth, brakesTwice },
+  // On its rolling resistance rocks rest on 17°.
   { "bedrock with boulders", "Bedrock with boulders", 0.35, 1.0, 0.020, 35.0, 2.5, holds(0.3),
-    Memory, hoek, assumed, "assumed: rocks rest on 17°", stones(2.0, 0.05, 0.2, 0.4), assumed,
+    Memory, stones(2.0, 0.05, 0.2, 0.4),
     "is quoted from memory: on 450 m of 35° rocks reach 47 m/s, in field surveys 30 m/s at most" },
   { "talus", "Talus", 0.6, 1.0, 0.3, 37.0, 2.0, sized(yields(10e6, 1.25, 0.6, 0.08)), Assumption,
-    assumed, lu, longSlopes, stones(2.0, 0.05, 0.1, 0.2), assumed, shortOfSteep, 4.0 },
+    stones(2.0, 0.05, 0.1, 0.2), shortOfSteep, 4.0 },
   { "talus with vegetation", "Talus with vegetation", 0.6, 1.0, 0.3, 37.0, 2.0,
-    sized(yields(10e6, 1.4, 0.6, 0.1)), Assumption, assumed, lu, "assumed, as talus",
-    stones(2.0, 0.05, 0.1, 0.2), assumed, shortOfSteep, 4.0 },
+    sized(yields(10e6, 1.4, 0.6, 0.1)), Assumption, stones(2.0, 0.05, 0.1, 0.2), shortOfSteep,
+    4.0 },
+  // On less roughness rocks walk on for minutes.
   { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, sized(yields(10e6, 1.25, 0.6, 0.36)), Assumption,
-    assumed, lu, lu, waves(0.15, 2.0), "assumed: nothing walks on for minutes",
+    waves(0.15, 2.0),
     "stops rocks too soon: the farthest 1 % below 150 m of drop at 40° have a reach angle of 36°, "
     "in field surveys 27.5° to 32°" },
   { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, deviates(yields(13e6, 0.45, 0.98, 0.18), 0.1),
-    FieldData, "docs/validation.md", lu, lu, waves(0.1, 2.0), "docs/validation.md",
+    FieldData, waves(0.1, 2.0),
     "is too fast on long slopes: 37 m/s (95 %) on 450 m of 35°, in field surveys 30 m/s at most; "
     "and blocks of 10 m³ go no farther than those of 0.1 m³, in nature they do",
     7.0 },

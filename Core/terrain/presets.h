@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Common kinds of ground, each with every parameter of the law and what supports it. The same with
-/// all sources: docs/materials.md, Presets.
+/// Common kinds of ground, each with every parameter of the law and what supports it. Their sources:
+/// docs/materials.md, Presets.
 
 #include "terrain/material.h"
 #include "terrain/roughness.h"
@@ -39,12 +39,8 @@ struct GroundPreset
   double frictionDeviationDegrees; ///< Of φ.
   YieldingGround yielding;
   PresetSupport support; ///< Of the weakest of its numbers that matter.
-  const char* restitutionSource;
-  const char* frictionSource;
-  const char* yieldingSource;
   /// Never node by node: whatever the cells, rocks meet the same ground.
   Roughness roughness;
-  const char* roughnessSource;
   const char* errs;              ///< Where it is known to err, for the note of a slope.
   double restitutionSpeed = 0.0; ///< K of the speed-dependent model, m/s; 0: Rn at every speed.
 

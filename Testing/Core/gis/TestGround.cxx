@@ -458,11 +458,6 @@ TEST(Ground, Presets)
   for (const GroundPreset& preset : groundPresets())
   {
     EXPECT_NO_THROW(preset.material().validate()) << preset.name;
-    for (const char* source :
-      { preset.restitutionSource, preset.frictionSource, preset.yieldingSource })
-    {
-      EXPECT_NE(std::string(source), "") << preset.name;
-    }
     // Friction by slip takes what Rt stands for.
     const SurfaceMaterial m = preset.material();
     EXPECT_TRUE(!m.yielding.slips() || m.tangentialRestitution == 1.0) << preset.name;
@@ -471,7 +466,6 @@ TEST(Ground, Presets)
     EXPECT_NO_THROW(preset.roughness.validate()) << preset.name;
     EXPECT_EQ(preset.roughness.any(), preset.roughness.isField())
       << preset.name << " would be another ground on other cells";
-    EXPECT_NE(std::string(preset.roughnessSource), "") << preset.name;
   }
   EXPECT_TRUE(holds(messageOf<DataError>([] { groundPreset("cheese"); }),
     { "cheese", "rock", "talus", "meadow", "asphalt" }));
