@@ -196,12 +196,6 @@ double strainEnergy(const Block& block, const BlockState& state)
   return isZero(state.strain) ? 0.0 : 0.5 * state.strain.dot(block.elasticity() * state.strain);
 }
 
-Vec3 angularMomentum(const Block& block, const BlockState& state)
-{
-  const Vec12 p = block.massMatrix() * bodyVelocity(state);
-  return state.orientation * Vec3(p.segment<3>(kRotation));
-}
-
 double relaxStrain(const Block& block, BlockState& state)
 {
   const double before = kineticEnergy(block, state) + strainEnergy(block, state);

@@ -171,8 +171,6 @@ double rigidKineticEnergy(const Block& block, const BlockState& state);
 double kineticEnergy(const Block& block, const BlockState& state);
 /// Elastic energy of the block, J.
 double strainEnergy(const Block& block, const BlockState& state);
-/// Angular momentum about the centroid, world axes, kg m²/s.
-Vec3 angularMomentum(const Block& block, const BlockState& state);
 
 /// Drops strain and strain rate, keeping momentum and angular momentum: what a block does when it
 /// takes off, its vibration dying out long before the next impact. Returns the energy dropped, J.

@@ -356,19 +356,4 @@ bool Ensemble::run(
   return !aborted && (!progress || progress(1.0));
 }
 
-bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
-  const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress)
-{
-  try
-  {
-    const AbortScope scope([&] { return !progress || progress(0.0); });
-    const Ensemble ensemble(terrain, rocks, parameters);
-    return ensemble.run(ensemble.whole(), sink, progress);
-  }
-  catch (const Aborted&)
-  {
-    return false; // rocks were still being checked or pushed apart
-  }
-}
-
 } // namespace rockfall

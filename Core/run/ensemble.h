@@ -90,8 +90,4 @@ private:
   mutable PushedApart pushed_; ///< Most and sums: the order does not count.
 };
 
-/// Simulates every rock in every iteration: `Ensemble::run` of the whole.
-bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
-  const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress = {});
-
 } // namespace rockfall

@@ -59,7 +59,8 @@ void singleRocks(benchmark::State& state, Shape shape, double timeStep, const Te
   for (auto _ : state)
   {
     TrajectoryStore store(kRocks, 1);
-    runEnsemble(slope, rocks, p, store);
+    const Ensemble ensemble(slope, rocks, p);
+    ensemble.run(ensemble.whole(), store);
     meanX = 0.0, steps = 0.0;
     for (const Trajectory& t : store.trajectories())
     {

@@ -2,8 +2,8 @@
 
 #include "Summaries.h"
 #include "longSlope.h"
+#include "runEnsemble.h"
 
-#include "run/ensemble.h"
 #include "statistics/sample.h"
 
 #include <algorithm>
@@ -61,7 +61,7 @@ SlopeFigures measure(
     rocks.push_back(std::move(rock));
   }
   Summaries ends;
-  runEnsemble(terrain, rocks, s.simulation, ends);
+  testing::runEnsemble(terrain, rocks, s.simulation, ends);
   return figuresOf(ends.all);
 }
 

@@ -16,11 +16,11 @@
 #include "Summaries.h"
 #include "fieldScores.h"
 #include "fieldTables.h"
+#include "runEnsemble.h"
 #include "trackedGround.h"
 
 #include "base/errors.h"
 #include "gis/raster/raster.h"
-#include "run/ensemble.h"
 #include "statistics/sample.h"
 
 #include <algorithm>
@@ -281,7 +281,7 @@ int run(int count, char** words)
   Experiment e = readExperiment(arguments.folder, arguments.settings);
   const auto begin = std::chrono::steady_clock::now();
   Summaries stops;
-  runEnsemble(e.terrain, e.rocks, p, stops);
+  rockfall::testing::runEnsemble(e.terrain, e.rocks, p, stops);
   sortStops(
     e, stops.all, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   writeStops(arguments.stops, e);

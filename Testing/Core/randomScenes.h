@@ -6,7 +6,7 @@
 #include "base/errors.h"
 #include "block/Block.h"
 #include "geometry/shapes.h"
-#include "run/ensemble.h"
+#include "runEnsemble.h"
 
 #include <algorithm>
 #include <chrono>

@@ -4,7 +4,7 @@
 /// Slopes and runs that several tests share.
 
 #include "geometry/shapes.h"
-#include "run/ensemble.h"
+#include "runEnsemble.h"
 
 #include <cmath>
 #include <functional>

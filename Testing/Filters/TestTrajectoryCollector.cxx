@@ -296,8 +296,7 @@ TEST_F(TestTrajectoryCollector, WrittenAsGeoPackage)
   writer->SetFileName(path.c_str());
   writer->SetInputConnection(this->Filter->GetOutputPort());
   EXPECT_EQ(writer->Write(), 1);
-  std::string crs;
-  const auto rows = rockfall::readSources(path, "", &crs);
+  const auto [rows, crs, ownCrs, notes] = rockfall::readSourceLayer(path, {});
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_NEAR((rows[2].position - rockfall::Vec3(500010, 5100020, 50)).norm(), 0.0, 1e-9);
   EXPECT_NE(crs.find("UTM zone 32N"), std::string::npos);
@@ -306,7 +305,7 @@ TEST_F(TestTrajectoryCollector, WrittenAsGeoPackage)
   writer->SetInputDataObject(empty);
   writer->Write();
   this->ExpectOneError({ "crossings.gpkg", "neither lines nor vertices" });
-  EXPECT_EQ(rockfall::readSources(path).size(), 4u); // as it was
+  EXPECT_EQ(rockfall::readSourceLayer(path, {}).rows.size(), 4u); // as it was
 }
 
 TEST_F(TestTrajectoryCollector, PrintSelfNamesEveryProperty)

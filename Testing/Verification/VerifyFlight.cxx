@@ -1,5 +1,6 @@
 // Flight between contacts: the parabola, and torque-free rotation (METHOD 10.3, 10.4).
 
+#include "angularMomentum.h"
 #include "verification.h"
 
 #include "block/flight.h"
@@ -10,6 +11,7 @@
 
 using namespace rockfall;
 using namespace rockfall::verification;
+using rockfall::testing::angularMomentum;
 using rockfall::testing::kGravity;
 
 namespace

@@ -1,6 +1,7 @@
 #include "verification.h"
 
 #include "form.h"
+#include "runEnsemble.h"
 
 #include "block/Block.h"
 
@@ -212,7 +213,7 @@ std::vector<Trajectory> simulateAll(
   const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& parameters)
 {
   TrajectoryStore store(int(rocks.size()), parameters.iterations);
-  runEnsemble(terrain, rocks, parameters, store);
+  testing::runEnsemble(terrain, rocks, parameters, store);
   return store.trajectories();
 }
 

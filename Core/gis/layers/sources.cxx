@@ -300,17 +300,4 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   return result;
 }
 
-std::vector<SourceRow> readSources(
-  const std::string& fileName, const std::string& targetCrs, std::string* crs)
-{
-  SourceOptions options;
-  options.targetCrs = targetCrs;
-  SourceLayer layer = readSourceLayer(fileName, options);
-  if (crs)
-  {
-    *crs = layer.crs;
-  }
-  return std::move(layer.rows);
-}
-
 } // namespace rockfall

@@ -105,10 +105,6 @@ struct SourceLayer
 /// and value. Prints nothing; safe on several threads at once.
 SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& options);
 
-/// The rows alone; `crs`, if given, receives that of the layer.
-std::vector<SourceRow> readSources(
-  const std::string& fileName, const std::string& targetCrs = {}, std::string* crs = nullptr);
-
 /// Throws DataError, which begins with `name`, if the outline of an area (x and y, closed or not)
 /// crosses or touches itself, as readSourceLayer does of a polygon. Prints nothing.
 void requireValidOutline(const std::vector<Vec3>& corners, const std::string& name);

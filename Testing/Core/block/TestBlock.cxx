@@ -1,5 +1,6 @@
 // The block with its 12 unknowns and its free flight (METHOD 1, 10.3, 10.4).
 
+#include "angularMomentum.h"
 #include "base/errors.h"
 #include "block/Block.h"
 #include "block/flight.h"
@@ -10,6 +11,7 @@
 #include <random>
 
 using namespace rockfall;
+using rockfall::testing::angularMomentum;
 
 namespace
 {

@@ -1,6 +1,7 @@
 // Torque-free rotation in closed form (METHOD 10.4), against an integration that knows nothing of
 // it.
 
+#include "angularMomentum.h"
 #include "block/FreeRotation.h"
 #include "block/flight.h"
 #include "form.h"
@@ -15,6 +16,7 @@
 #include <vector>
 
 using namespace rockfall;
+using rockfall::testing::angularMomentum;
 
 namespace
 {

@@ -133,8 +133,7 @@ TEST(LayerWriter, PointsOfAGeoPackage)
     writer.commit();
   }
   EXPECT_EQ(filesBeside(path), 1u);
-  std::string crs;
-  const auto rows = readSources(path, "", &crs);
+  const auto [rows, crs, ownCrs, notes] = readSourceLayer(path, {});
   EXPECT_EQ(filesBeside(path), 1u); // a reader leaves nothing
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].position, Vec3(500000.125, 5100000.25, 712.5));

@@ -17,6 +17,11 @@ namespace
 
 using namespace rockfall::testing;
 
+std::vector<SourceRow> readSources(const std::string& path, const std::string& crs = {})
+{
+  return readSourceLayer(path, { .targetCrs = crs }).rows;
+}
+
 template <class Expected>
 std::string refusal(const std::string& path, const std::string& crs = {})
 {
@@ -196,11 +201,7 @@ TEST(Sources, pointsAreBroughtToTheTerrain)
 TEST(Sources, sayInWhichCrsTheyAre)
 {
   const auto crsOf = [](const std::string& path, const std::string& target = {})
-  {
-    std::string crs = "untouched";
-    readSources(path, target, &crs);
-    return crs;
-  };
+  { return readSourceLayer(path, { .targetCrs = target }).crs; };
   const std::string lonLat = rocksAt(R"({"type":"Point","coordinates":[9,45,700]})");
   EXPECT_TRUE(holds(crsOf(lonLat, "EPSG:32632"), { "PROJCRS[", "UTM zone 32N" }));
   EXPECT_EQ(crsOf(lonLat, "EPSG:32632"), wktOfCrs("EPSG:32632"));

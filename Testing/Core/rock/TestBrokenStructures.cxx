@@ -1,7 +1,6 @@
 // What one rock of a mass fall has broken is gone for the others.
 
 #include "piles.h"
-#include "run/ensemble.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,6 @@
 #include "law/settings.h"
 #include "rock/fragmentation.h"
 #include "run/brokenFall.h"
-#include "run/ensemble.h"
 #include "run/stateHash.h"
 #include "slopes.h"
 #include "statistics/HazardRaster.h"

@@ -1,5 +1,6 @@
 // One step against the method's equations, written out here a second time (METHOD 2, 3).
 
+#include "angularMomentum.h"
 #include "geometry/shapes.h"
 #include "law/springs.h"
 #include "solve/step/StepSolver.h"
@@ -10,6 +11,7 @@
 #include <random>
 
 using namespace rockfall;
+using rockfall::testing::angularMomentum;
 
 TEST(Springs, ConserveEnergyWhateverThePhase)
 {

@@ -4,7 +4,6 @@
 
 #include "contact/ground/heightOver.h"
 #include "form.h"
-#include "run/ensemble.h"
 #include "terrain/Surface.h"
 
 #include <gtest/gtest.h>
@@ -18,6 +17,7 @@
 #include <vector>
 
 using namespace rockfall;
+using rockfall::testing::runEnsemble;
 using rockfall::testing::simulate;
 
 namespace

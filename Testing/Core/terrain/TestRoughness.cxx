@@ -13,6 +13,7 @@
 
 using namespace rockfall;
 using rockfall::testing::makeSlope;
+using rockfall::testing::runEnsemble;
 
 namespace
 {

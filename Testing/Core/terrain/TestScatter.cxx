@@ -12,6 +12,7 @@
 
 using namespace rockfall;
 using rockfall::testing::makePlane;
+using rockfall::testing::runEnsemble;
 
 namespace
 {

@@ -1,5 +1,6 @@
 // Many rocks at once: what must not be lost, not overlap, come to rest and be the same again.
 
+#include "angularMomentum.h"
 #include "form.h"
 #include "piles.h"
 #include "solve/island/SoftSolver.h"

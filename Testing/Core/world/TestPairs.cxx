@@ -1,5 +1,6 @@
 // Two rocks that meet: momentum, angular momentum, energy, restitution.
 
+#include "angularMomentum.h"
 #include "base/errors.h"
 #include "piles.h"
 #include "slopes.h"
