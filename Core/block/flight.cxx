@@ -3,7 +3,6 @@
 #include "block/FreeRotation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace rockfall

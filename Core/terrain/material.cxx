@@ -4,8 +4,6 @@
 #include "law/settings.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace rockfall
 {

@@ -9,7 +9,6 @@
 #include "world/pairImpacts.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 
 namespace rockfall

@@ -1,7 +1,6 @@
 #include "world/WorldState.h"
 
 #include "contact/ground/motion.h"
-#include "law/settings.h"
 #include "rock/fall/atStructures.h"
 #include "terrain/Obstacles.h"
 

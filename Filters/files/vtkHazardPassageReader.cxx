@@ -1,6 +1,5 @@
 #include "vtkHazardPassageReader.h"
 
-#include "base/errors.h"
 #include "counts/hazardImage.h"
 #include "shared/errorReport.h"
 #include "shared/streamingPieces.h"
@@ -12,8 +11,6 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-
-#include <new>
 
 vtkStandardNewMacro(vtkHazardPassageReader);
 

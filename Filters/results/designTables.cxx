@@ -11,7 +11,6 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>

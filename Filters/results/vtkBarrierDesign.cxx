@@ -1,7 +1,6 @@
 #include "vtkBarrierDesign.h"
 
 #include "base/require.h"
-#include "base/text/numberText.h"
 #include "results/designTables.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"

@@ -1,6 +1,5 @@
 #include "vtkRockfallHazardMap.h"
 
-#include "base/errors.h"
 #include "counts/hazardImage.h"
 #include "results/drapedMap.h"
 #include "results/trajectoriesInput.h"
@@ -20,7 +19,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <new>
 #include <string>
 
 vtkStandardNewMacro(vtkRockfallHazardMap);

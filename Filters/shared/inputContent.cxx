@@ -14,7 +14,6 @@
 #include <cstring>
 #include <map>
 #include <string>
-#include <vector>
 
 namespace rockfall::filters
 {

@@ -1,6 +1,5 @@
 #include "vtkRockfallSimulation.h"
 
-#include "base/errors.h"
 #include "base/version.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"

@@ -5,7 +5,6 @@
 #include "base/hectare.h"
 #include "base/require.h"
 #include "base/text/numberText.h"
-#include "gis/base/externalReferences.h"
 #include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"

@@ -18,12 +18,10 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
 #include <cmath>
-#include <new>
 #include <optional>
 
 vtkStandardNewMacro(vtkJointedRockMass);

@@ -13,15 +13,10 @@
 #include "sources/rockMaker.h"
 #include "sources/shapeInput.h"
 
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <limits>
-#include <new>
 #include <numeric>
 
 vtkStandardNewMacro(vtkRockBlockSource);

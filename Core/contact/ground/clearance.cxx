@@ -4,7 +4,6 @@
 #include "contact/ground/roundContact.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace rockfall

@@ -3,7 +3,6 @@
 #include "law/settings.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace rockfall
 {

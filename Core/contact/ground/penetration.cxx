@@ -6,7 +6,6 @@
 #include "law/settings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 

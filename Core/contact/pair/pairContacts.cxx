@@ -5,7 +5,6 @@
 #include "law/settings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace rockfall

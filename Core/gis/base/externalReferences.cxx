@@ -12,10 +12,8 @@
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
 
-#include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <system_error>
 #include <vector>

@@ -5,7 +5,6 @@
 
 #include <cstring>
 #include <memory>
-#include <utility>
 
 namespace rockfall::gis
 {

@@ -8,8 +8,6 @@
 #include <cpl_string.h>
 #include <gdal_priv.h>
 
-#include <algorithm>
-
 namespace rockfall::gis
 {
 

@@ -1,6 +1,5 @@
 #include "gis/layers/sourceGeometry.h"
 
-#include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "base/text/plainText.h"
 #include "gis/base/gdal.h"

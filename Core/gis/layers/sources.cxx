@@ -15,8 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
-#include <map>
 
 namespace rockfall
 {

@@ -14,7 +14,6 @@
 
 #include <cmath>
 #include <map>
-#include <memory>
 
 namespace rockfall::gis
 {

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <initializer_list>
 #include <limits>
-#include <optional>
 
 namespace rockfall::gis
 {

@@ -12,10 +12,8 @@
 #include <ogr_spatialref.h>
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace rockfall::gis
 {

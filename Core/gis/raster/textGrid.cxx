@@ -12,9 +12,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
-#include <memory>
 
 namespace rockfall::gis
 {

@@ -13,7 +13,6 @@
 #include <gdal_priv.h>
 
 #include <array>
-#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <memory>

@@ -12,7 +12,6 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace rockfall::gis
 {

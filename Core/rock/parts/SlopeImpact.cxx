@@ -4,7 +4,6 @@
 #include "rock/restitution.h"
 #include "terrain/Obstacles.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

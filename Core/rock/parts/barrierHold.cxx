@@ -5,7 +5,6 @@
 #include "terrain/Obstacles.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace rockfall
 {

@@ -4,7 +4,6 @@
 #include "law/settings.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace rockfall::soft
 {
