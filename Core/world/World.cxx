@@ -19,8 +19,9 @@ namespace rockfall
 {
 
 World::World(const Surface& surface, std::span<const Rock> rocks, std::span<const Block> blocks,
-  const SimulationParameters& parameters, int number)
+  const SimulationParameters& parameters, int number, bool sleeps)
   : world_(surface, rocks, parameters)
+  , sleeps_(sleeps)
 {
   world_.rocks.reserve(rocks.size());
   if (const Obstacles* obstacles = surface.terrain().obstacles())
@@ -223,7 +224,7 @@ void World::findAtBarriers(double duration)
 
 void World::settle(double before)
 {
-  if (awake)
+  if (!sleeps_)
   {
     return;
   }

@@ -32,9 +32,9 @@ class IslandFinder;
 class World
 {
 public:
-  /// `number`: that of the first rock in the iteration.
+  /// `number`: that of the first rock in the iteration; `sleeps`: whether islands at rest do.
   World(const Surface& surface, std::span<const Rock> rocks, std::span<const Block> blocks,
-    const SimulationParameters& parameters, int number = 0);
+    const SimulationParameters& parameters, int number = 0, bool sleeps = true);
   ~World();
 
   /// All rocks to rest, to the edge of the slope or to the end time: a trajectory for each, in
@@ -55,9 +55,6 @@ public:
   /// Pairs near each other whose axis was ever looked for, by (first, second).
   std::vector<const RockPair*> pairs() const;
 
-  /// Rocks never sleep: for tests of how still a pile stands.
-  bool awake = false;
-
 private:
   void step(double until);
   void advanceAll(double until); ///< Islands, and rocks that meet no other, on all threads.
@@ -69,6 +66,7 @@ private:
   void settle(double before); ///< Islands of a step that began at this time, s.
 
   WorldState world_;
+  bool sleeps_;
   std::unique_ptr<IslandFinder> islandFinder_; ///< None if rocks hit no other.
   std::vector<int> order_;  ///< Islands in the order in which they are gone over.
   std::vector<char> waits_; ///< Of each unit, whether it may meet a barrier in the step.

@@ -94,8 +94,7 @@ struct Pile
     blocks = blocksOf(rocks);
     parameters.rockRockContact = true;
     surface = std::make_unique<Surface>(ground, parameters.seed, 0);
-    fall = std::make_unique<World>(*surface, rocks, blocks, parameters);
-    fall->awake = awake;
+    fall = std::make_unique<World>(*surface, rocks, blocks, parameters, 0, !awake);
   }
   void start()
   {

@@ -86,8 +86,7 @@ std::array<double, 2> travel(const Terrain& ground, const std::vector<Rock>& roc
     blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
   }
   const Surface surface(ground, 1, 0);
-  World fall(surface, rocks, blocks, parameters);
-  fall.awake = true;
+  World fall(surface, rocks, blocks, parameters, 0, false);
   fall.release();
   while (fall.time() < duration - 1e-9 && fall.advance())
   {
