@@ -4,9 +4,9 @@
 #include "base/text/numberText.h"
 #include "files/layerStyles.h"
 #include "gis/raster/rasterWriter.h"
+#include "shared/coordinateFieldData.h"
 #include "shared/inputs.h"
 #include "shared/streamingPieces.h"
-#include "shared/terrainFieldData.h"
 #include "shared/withAbort.h"
 
 #include "vtkCellData.h"
@@ -16,10 +16,8 @@
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkIntArray.h"
 #include "vtkObjectFactory.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -122,11 +120,7 @@ int vtkHazardMapWriter::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkHazardMapWriter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) &&
-    inputs[0]->GetNumberOfInformationObjects() > 0)
-  {
-    rockfall::filters::requestOwnPiece(inputs[0]->GetInformationObject(0));
-  }
+  rockfall::filters::requestOwnPieces(request, inputs, 1);
   return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 

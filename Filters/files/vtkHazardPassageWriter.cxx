@@ -10,10 +10,8 @@
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 vtkStandardNewMacro(vtkHazardPassageWriter);
 
@@ -37,16 +35,7 @@ int vtkHazardPassageWriter::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkHazardPassageWriter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
-  {
-    for (int port = 0; port < 2; ++port)
-    {
-      if (inputs[port]->GetNumberOfInformationObjects() > 0)
-      {
-        rockfall::filters::requestOwnPiece(inputs[port]->GetInformationObject(0));
-      }
-    }
-  }
+  rockfall::filters::requestOwnPieces(request, inputs, 2);
   return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 

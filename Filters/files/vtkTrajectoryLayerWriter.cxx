@@ -16,12 +16,10 @@
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
-#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
 #include <functional>
@@ -228,11 +226,7 @@ int vtkTrajectoryLayerWriter::FillInputPortInformation(int, vtkInformation* info
 vtkTypeBool vtkTrajectoryLayerWriter::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) &&
-    inputs[0]->GetNumberOfInformationObjects() > 0)
-  {
-    rockfall::filters::requestOwnPiece(inputs[0]->GetInformationObject(0));
-  }
+  rockfall::filters::requestOwnPieces(request, inputs, 1);
   return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 

@@ -30,14 +30,18 @@ bool isFurtherRank()
   return controller && controller->GetLocalProcessId() > 0;
 }
 
-void requestOwnPiece(vtkInformation* input)
+void requestOwnPieces(vtkInformation* request, vtkInformationVector** inputs, int ports)
 {
-  if (auto* controller = vtkMultiProcessController::GetGlobalController())
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  auto* controller = vtkMultiProcessController::GetGlobalController();
+  const bool asks = controller && request->Has(Pipeline::REQUEST_UPDATE_EXTENT());
+  for (int port = 0; asks && port < ports; ++port)
   {
-    input->Set(
-      vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), controller->GetLocalProcessId());
-    input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(),
-      controller->GetNumberOfProcesses());
+    if (vtkInformation* input = inputs[port]->GetInformationObject(0))
+    {
+      input->Set(Pipeline::UPDATE_PIECE_NUMBER(), controller->GetLocalProcessId());
+      input->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), controller->GetNumberOfProcesses());
+    }
   }
 }
 

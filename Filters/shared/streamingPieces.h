@@ -17,7 +17,8 @@ bool isFurtherPiece(vtkInformationVector* outputs);
 /// True on every rank of a parallel run but the first.
 bool isFurtherRank();
 
-/// Asks an input for the piece of this rank: writers would ask for all of it, on every rank.
-void requestOwnPiece(vtkInformation* input);
+/// Where a request passes update extents on, asks the inputs of these ports for the piece of this
+/// rank: writers would ask for all of it, on every rank.
+void requestOwnPieces(vtkInformation* request, vtkInformationVector** inputs, int ports);
 
 } // namespace rockfall::filters
