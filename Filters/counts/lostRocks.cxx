@@ -2,11 +2,10 @@
 
 #include "rock/results.h"
 #include "shared/arrays.h"
+#include "shared/cells.h"
 #include "shared/errorReport.h"
 #include "shared/inputContent.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
@@ -57,23 +56,19 @@ LostRocks lostOf(vtkPolyData* trajectories)
   {
     return lost;
   }
-  vtkIdType cell = trajectories->GetNumberOfVerts(); // polydata's cells begin with them
-  auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
-  for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
-  {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    lines->GetCurrentCell(size, ids);
-    double way = 0.0;
-    Vec3 start, point;
-    for (vtkIdType k = 0; k < size && way < kLeastWay; ++k)
+  forEachLine(trajectories,
+    [&](vtkIdType cell, std::span<const vtkIdType> ids)
     {
-      trajectories->GetPoint(ids[k], (k == 0 ? start : point).data());
-      way = k == 0 ? 0.0 : std::max(way, (point - start).norm());
-    }
-    lost.add(lossOf(fate->GetTuple1(cell)), size > 0 ? time->GetTuple1(ids[size - 1]) : 0.0, way,
-      piece ? int(piece->GetTuple1(cell)) : 0);
-  }
+      double way = 0.0;
+      Vec3 start, point;
+      for (std::size_t k = 0; k < ids.size() && way < kLeastWay; ++k)
+      {
+        trajectories->GetPoint(ids[k], (k == 0 ? start : point).data());
+        way = k == 0 ? 0.0 : std::max(way, (point - start).norm());
+      }
+      lost.add(lossOf(fate->GetTuple1(cell)), ids.empty() ? 0.0 : time->GetTuple1(ids.back()), way,
+        piece ? int(piece->GetTuple1(cell)) : 0);
+    });
   return lost;
 }
 
@@ -85,27 +80,26 @@ namespace
 std::int64_t copiesIn(vtkPolyData* trajectories)
 {
   vtkDataArray* iteration = trajectories->GetCellData()->GetArray("Iteration");
+  if (!iteration)
+  {
+    return 0;
+  }
   std::set<std::array<double, 7>> ways;
   std::int64_t copies = 0;
-  vtkIdType cell = trajectories->GetNumberOfVerts();
-  auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
-  for (lines->GoToFirstCell(); iteration && !lines->IsDoneWithTraversal();
-       lines->GoToNextCell(), ++cell)
-  {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    lines->GetCurrentCell(size, ids);
-    Vec3 start, stop;
-    trajectories->GetPoint(size > 0 ? ids[0] : 0, start.data());
-    trajectories->GetPoint(size > 0 ? ids[size - 1] : 0, stop.data());
-    if ((stop - start).norm() > kLeastWay)
+  forEachLine(trajectories,
+    [&](vtkIdType cell, std::span<const vtkIdType> ids)
     {
-      copies += !ways
-                   .insert({ iteration->GetTuple1(cell), start.x(), start.y(), start.z(), stop.x(),
-                     stop.y(), stop.z() })
-                   .second;
-    }
-  }
+      Vec3 start, stop;
+      trajectories->GetPoint(ids.empty() ? 0 : ids.front(), start.data());
+      trajectories->GetPoint(ids.empty() ? 0 : ids.back(), stop.data());
+      if ((stop - start).norm() > kLeastWay)
+      {
+        copies += !ways
+                     .insert({ iteration->GetTuple1(cell), start.x(), start.y(), start.z(),
+                       stop.x(), stop.y(), stop.z() })
+                     .second;
+      }
+    });
   return copies;
 }
 

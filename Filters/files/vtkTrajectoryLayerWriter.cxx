@@ -4,14 +4,13 @@
 #include "base/types.h"
 #include "files/layerStyles.h"
 #include "gis/layers/layerWriter.h"
+#include "shared/cells.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
 #include "shared/withAbort.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
@@ -19,10 +18,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
-
-#include <functional>
 
 vtkStandardNewMacro(vtkTrajectoryLayerWriter);
 
@@ -110,20 +106,6 @@ private:
   std::vector<Source> Sources;
 };
 
-using UseCell = std::function<void(vtkIdType cell, vtkIdType size, const vtkIdType* ids)>;
-
-void forEachCell(vtkCellArray* cells, vtkIdType first, const UseCell& use)
-{
-  auto iterator = vtk::TakeSmartPointer(cells->NewIterator());
-  for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
-  {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    iterator->GetCurrentCell(size, ids);
-    use(first++, size, ids);
-  }
-}
-
 Vec3 pointOf(vtkPolyData* data, vtkIdType id)
 {
   Vec3 point;
@@ -141,13 +123,13 @@ void writeTrajectories(vtkPolyData* data, LayerWriter& writer)
   std::vector<Vec3> places;
   std::vector<double> measures;
   std::vector<FieldValue> values;
-  forEachCell(data->GetLines(), data->GetNumberOfVerts(),
-    [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
+  rockfall::filters::forEachLine(data,
+    [&](vtkIdType cell, std::span<const vtkIdType> ids)
     {
       places.clear();
       measures.clear();
       values.clear();
-      for (vtkIdType k = 0; k < size; ++k)
+      for (std::size_t k = 0; k < ids.size(); ++k)
       {
         places.push_back(pointOf(data, ids[k]));
         measures.push_back(time ? time->GetTuple1(ids[k]) : double(k));
@@ -169,15 +151,15 @@ void writeLinePoints(vtkPolyData* data, bool all, LayerWriter& writer)
   writer.beginLayer(name, LayerWriter::Geometry::Point, fields);
   writer.setStyle(rockfall::filters::layerStyle(name, fields));
   std::vector<FieldValue> values;
-  forEachCell(data->GetLines(), data->GetNumberOfVerts(),
-    [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
+  rockfall::filters::forEachLine(data,
+    [&](vtkIdType cell, std::span<const vtkIdType> ids)
     {
-      for (vtkIdType k = all || size == 0 ? 0 : size - 1; k < size; ++k)
+      for (const vtkIdType id : all || ids.empty() ? ids : ids.last(1))
       {
-        const Vec3 place = pointOf(data, ids[k]);
+        const Vec3 place = pointOf(data, id);
         values.clear();
         ofLine.AppendValues(cell, values);
-        ofPoint.AppendValues(ids[k], values);
+        ofPoint.AppendValues(id, values);
         writer.add({ &place, 1 }, {}, values);
       }
     });
@@ -193,15 +175,15 @@ void writeVertices(vtkPolyData* data, LayerWriter& writer)
   writer.beginLayer("points", LayerWriter::Geometry::Point, fields);
   writer.setStyle(rockfall::filters::layerStyle("points", fields));
   std::vector<FieldValue> values;
-  forEachCell(data->GetVerts(), 0,
-    [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
+  rockfall::filters::forEachCell(data->GetVerts(), 0,
+    [&](vtkIdType cell, std::span<const vtkIdType> ids)
     {
-      for (vtkIdType k = 0; k < size; ++k)
+      for (const vtkIdType id : ids)
       {
-        const Vec3 place = pointOf(data, ids[k]);
+        const Vec3 place = pointOf(data, id);
         values.clear();
         ofVertex.AppendValues(cell, values);
-        ofPoint.AppendValues(ids[k], values);
+        ofPoint.AppendValues(id, values);
         writer.add({ &place, 1 }, {}, values);
       }
     });

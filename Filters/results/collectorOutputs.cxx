@@ -2,12 +2,12 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "shared/cells.h"
 #include "shared/columns.h"
 #include "shared/inputContent.h"
 #include "shared/terrainFieldData.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
@@ -35,14 +35,14 @@ std::vector<CollectorLine> linesOf(
   vtkPolyData* input, const Vec3& origin, const CollectorLine& barrier)
 {
   std::vector<CollectorLine> lines;
-  const auto add = [&](vtkIdType size, const vtkIdType* ids, bool closed)
+  const auto add = [&](std::span<const vtkIdType> ids, bool closed)
   {
     CollectorLine& line = lines.emplace_back(barrier);
     line.name = "line " + std::to_string(lines.size());
-    for (vtkIdType k = 0; k < size; ++k)
+    for (const vtkIdType id : ids)
     {
       Vec3 point;
-      input->GetPoint(ids[k], point.data());
+      input->GetPoint(id, point.data());
       const Eigen::Vector2d place = (point - origin).head<2>();
       if (line.points.empty() || line.points.back() != place)
       {
@@ -59,17 +59,8 @@ std::vector<CollectorLine> linesOf(
       line.points.push_back(line.points.front());
     }
   };
-  for (vtkCellArray* cells : { input->GetLines(), input->GetPolys() })
-  {
-    auto cell = vtk::TakeSmartPointer(cells->NewIterator());
-    for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell())
-    {
-      vtkIdType size = 0;
-      const vtkIdType* ids = nullptr;
-      cell->GetCurrentCell(size, ids);
-      add(size, ids, cells == input->GetPolys());
-    }
-  }
+  forEachLine(input, [&](vtkIdType, auto ids) { add(ids, false); });
+  forEachCell(input->GetPolys(), 0, [&](vtkIdType, auto ids) { add(ids, true); });
   if (lines.empty())
   {
     throw DataError("The Lines input has no lines");

@@ -1,16 +1,15 @@
 #include "results/lineWalls.h"
 
 #include "shared/arrays.h"
+#include "shared/cells.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
@@ -113,19 +112,16 @@ std::array<double, 6> lineAcross(
   };
   Eigen::Vector2d start(0.0, 0.0), way(0.0, 0.0);
   double paths = 0.0;
-  auto cells = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
-  {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    cells->GetCurrentCell(size, ids);
-    if (size > 1)
+  forEachLine(trajectories,
+    [&](vtkIdType, std::span<const vtkIdType> ids)
     {
-      start += place(ids[0]);
-      way += place(ids[size - 1]) - place(ids[0]);
-      paths += 1.0;
-    }
-  }
+      if (ids.size() > 1)
+      {
+        start += place(ids.front());
+        way += place(ids.back()) - place(ids.front());
+        paths += 1.0;
+      }
+    });
   start /= std::max(paths, 1.0);
   way /= std::max(paths, 1.0);
   const Eigen::Vector2d middle = start + 0.5 * way;

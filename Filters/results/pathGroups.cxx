@@ -4,14 +4,12 @@
 #include "base/text/numberText.h"
 #include "geometry/shapes.h"
 #include "geometry/shell.h"
+#include "shared/cells.h"
 #include "shared/inputs.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
@@ -94,34 +92,33 @@ std::vector<PathGroup> groupPaths(
   const auto collect = [&](auto&& use)
   {
     const vtkIdType first = input->GetNumberOfVerts(); // polydata's cells begin with its vertices
-    vtkIdType cell = first;
     vtkVariant ofRock;
-    auto lines = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
-    for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
-    {
-      const bool begins = !piece || cell == first || piece->GetComponent(cell, 0) == 0.0;
-      if (!begins)
+    forEachCell(input->GetLines(), first,
+      [&](vtkIdType cell, std::span<const vtkIdType> ids)
       {
-        use(ofRock, false, lines);
-        continue;
-      }
-      vtkVariant value =
-        array ? array->GetVariantValue(cell * array->GetNumberOfComponents()) : vtkVariant(0);
-      if (value.IsNumeric() && std::isnan(value.ToDouble()))
-      {
-        throw DataError("The Input's cell array \"" + arrayName + "\" has nan at cell " +
-          std::to_string(cell) + ", which is in no group");
-      }
-      if (classes)
-      {
-        const auto above = std::upper_bound(limits.begin(), limits.end(), value.ToDouble());
-        value = vtkVariant(int(above - limits.begin()));
-      }
-      ofRock = value;
-      use(value, true, lines);
-    }
+        const bool begins = !piece || cell == first || piece->GetComponent(cell, 0) == 0.0;
+        if (!begins)
+        {
+          use(ofRock, false, ids);
+          return;
+        }
+        vtkVariant value =
+          array ? array->GetVariantValue(cell * array->GetNumberOfComponents()) : vtkVariant(0);
+        if (value.IsNumeric() && std::isnan(value.ToDouble()))
+        {
+          throw DataError("The Input's cell array \"" + arrayName + "\" has nan at cell " +
+            std::to_string(cell) + ", which is in no group");
+        }
+        if (classes)
+        {
+          const auto above = std::upper_bound(limits.begin(), limits.end(), value.ToDouble());
+          value = vtkVariant(int(above - limits.begin()));
+        }
+        ofRock = value;
+        use(value, true, ids);
+      });
   };
-  collect([&](const vtkVariant& value, bool, auto&) { order.emplace(value, 0); });
+  collect([&](const vtkVariant& value, bool, auto) { order.emplace(value, 0); });
   for (auto& [value, index] : order)
   {
     index = groups.size();
@@ -130,17 +127,14 @@ std::vector<PathGroup> groupPaths(
                                          : "all";
   }
   collect(
-    [&](const vtkVariant& value, bool begins, auto& lines)
+    [&](const vtkVariant& value, bool begins, auto ids)
     {
-      vtkIdType size = 0;
-      const vtkIdType* ids = nullptr;
-      lines->GetCurrentCell(size, ids);
       PathGroup& group = groups[order.at(value)];
       group.rockOf.push_back(begins ? group.paths.size() : group.rockOf.back());
       std::vector<Vec3>& path = group.paths.emplace_back();
-      for (vtkIdType k = 0; k < size; ++k)
+      for (const vtkIdType id : ids)
       {
-        input->GetPoint(ids[k], path.emplace_back().data());
+        input->GetPoint(id, path.emplace_back().data());
       }
     });
   return groups;

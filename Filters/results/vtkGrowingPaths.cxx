@@ -2,12 +2,12 @@
 
 #include "base/errors.h"
 #include "shared/arrays.h"
+#include "shared/cells.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/withAbort.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
@@ -17,7 +17,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -233,21 +232,16 @@ int vtkGrowingPaths::RequestData(
       }
       Growth growth(input, times, until);
       output->GetCellData()->CopyAllocate(input->GetCellData());
-      vtkIdType cell = input->GetNumberOfVerts(); // polydata's cells begin with its vertices
       vtkIdType made = 0;
-      auto lines = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
-      for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
-      {
-        vtkIdType size = 0;
-        const vtkIdType* ids = nullptr;
-        lines->GetCurrentCell(size, ids);
-        if (size == 0)
+      rockfall::filters::forEachLine(input,
+        [&](vtkIdType cell, std::span<const vtkIdType> ids)
         {
-          continue;
-        }
-        growth.Append(size, ids);
-        output->GetCellData()->CopyData(input->GetCellData(), cell, made++);
-      }
+          if (!ids.empty())
+          {
+            growth.Append(vtkIdType(ids.size()), ids.data());
+            output->GetCellData()->CopyData(input->GetCellData(), cell, made++);
+          }
+        });
       growth.Finish(output);
       rockfall::filters::rememberRanges(output);
       return 1;

@@ -4,11 +4,11 @@
 #include "base/text/numberText.h"
 #include "mesh/precision.h"
 #include "rock/results.h"
+#include "shared/cells.h"
 #include "shared/inputs.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -16,7 +16,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -246,22 +245,19 @@ void checkOrder(vtkPolyData* data, const std::string& name)
   auto* doubles = vtkDoubleArray::SafeDownCast(times);
   const double* fast = doubles ? doubles->GetPointer(0) : nullptr;
   const auto at = [&](vtkIdType id) { return fast ? fast[id] : times->GetComponent(id, 0); };
-  auto lines = vtk::TakeSmartPointer(data->GetLines()->NewIterator());
-  for (lines->GoToFirstCell(); times && !lines->IsDoneWithTraversal(); lines->GoToNextCell())
-  {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    lines->GetCurrentCell(size, ids);
-    for (vtkIdType k = 1; k < size; ++k)
+  forEachCell(data->GetLines(), 0,
+    [&](vtkIdType line, std::span<const vtkIdType> ids)
     {
-      if (at(ids[k]) < at(ids[k - 1]))
+      for (std::size_t k = 1; times && k < ids.size(); ++k)
       {
-        throw DataError(name + "'s line " + std::to_string(lines->GetCurrentCellId()) +
-          " goes back in time, from " + numberText(at(ids[k - 1])) + " to " +
-          numberText(at(ids[k])) + " s: it is no path of one rock");
+        if (at(ids[k]) < at(ids[k - 1]))
+        {
+          throw DataError(name + "'s line " + std::to_string(line) + " goes back in time, from " +
+            numberText(at(ids[k - 1])) + " to " + numberText(at(ids[k])) +
+            " s: it is no path of one rock");
+        }
       }
-    }
-  }
+    });
 }
 
 } // namespace

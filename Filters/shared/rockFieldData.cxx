@@ -6,17 +6,16 @@
 #include "geometry/shapes.h"
 #include "geometry/shell.h"
 #include "mesh/precision.h"
+#include "shared/cells.h"
 #include "shared/columns.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
@@ -48,52 +47,48 @@ std::vector<Faces> groupByBlock(vtkPolyData* input)
 {
   vtkDataArray* blockIds = input->GetCellData()->GetArray("BlockId");
   // A polydata's cells are its vertices, its lines, its polygons and its strips, in this order.
-  vtkIdType cell = input->GetNumberOfVerts() + input->GetNumberOfLines();
+  const vtkIdType first = input->GetNumberOfVerts() + input->GetNumberOfLines();
   std::vector<Faces> blocks;
   std::map<std::int64_t, std::size_t> index;
-  auto polygons = vtk::TakeSmartPointer(input->GetPolys()->NewIterator());
-  for (polygons->GoToFirstCell(); !polygons->IsDoneWithTraversal();
-       polygons->GoToNextCell(), ++cell)
-  {
-    stayWanted();
-    double id = 0.0;
-    if (blockIds)
+  forEachCell(input->GetPolys(), first,
+    [&](vtkIdType cell, std::span<const vtkIdType> ids)
     {
-      id = blockIds->GetComponent(cell, 0);
-      if (!(std::abs(id) < 0x1p53) || id != std::floor(id))
+      stayWanted();
+      double id = 0.0;
+      if (blockIds)
       {
-        throw DataError("The Rocks input's BlockId of cell " + std::to_string(cell) + " is " +
-          numberText(id) + ", it must be a whole number");
+        id = blockIds->GetComponent(cell, 0);
+        if (!(std::abs(id) < 0x1p53) || id != std::floor(id))
+        {
+          throw DataError("The Rocks input's BlockId of cell " + std::to_string(cell) + " is " +
+            numberText(id) + ", it must be a whole number");
+        }
       }
-    }
-    const auto place = index.emplace(std::int64_t(id), blocks.size());
-    if (place.second)
-    {
-      blocks.emplace_back();
-      blocks.back().blockId = std::int64_t(id);
-      blocks.back().firstCell = cell;
-    }
-    Faces& block = blocks[place.first->second];
-    if (!place.second)
-    {
-      block.furtherCells.push_back(cell);
-    }
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    polygons->GetCurrentCell(size, ids);
-    std::vector<int>& loop = block.loops.emplace_back();
-    for (vtkIdType k = 0; k < size; ++k)
-    {
-      const auto number = block.numbers.emplace(ids[k], int(block.points.size()));
-      if (number.second)
+      const auto place = index.emplace(std::int64_t(id), blocks.size());
+      if (place.second)
       {
-        Vec3 p;
-        input->GetPoint(ids[k], p.data());
-        block.points.push_back(p);
+        blocks.emplace_back();
+        blocks.back().blockId = std::int64_t(id);
+        blocks.back().firstCell = cell;
       }
-      loop.push_back(number.first->second);
-    }
-  }
+      Faces& block = blocks[place.first->second];
+      if (!place.second)
+      {
+        block.furtherCells.push_back(cell);
+      }
+      std::vector<int>& loop = block.loops.emplace_back();
+      for (const vtkIdType point : ids)
+      {
+        const auto number = block.numbers.emplace(point, int(block.points.size()));
+        if (number.second)
+        {
+          Vec3 p;
+          input->GetPoint(point, p.data());
+          block.points.push_back(p);
+        }
+        loop.push_back(number.first->second);
+      }
+    });
   return blocks;
 }
 

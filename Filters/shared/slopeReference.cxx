@@ -3,11 +3,10 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "shared/arrays.h"
+#include "shared/cells.h"
 #include "shared/coordinateFieldData.h"
 #include "shared/inputContent.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -234,35 +233,31 @@ std::vector<char> tilesUnder(vtkPolyData* paths, const Tiling& tiling)
 {
   std::vector<char> wanted(std::size_t(tiling.across()) * std::size_t(tiling.down()), 0);
   vtkDataArray* width = paths->GetCellData()->GetArray(widthName);
-  vtkIdType cell = paths->GetNumberOfVerts(); // which come first
-  auto lines = vtk::TakeSmartPointer(paths->GetLines()->NewIterator());
-  for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
-  {
-    const double half = width ? 0.5 * width->GetComponent(cell, 0) : 0.0;
-    const double margin = std::max(kBesideNodes, 2.0 + (half + kBeside) / tiling.cellSize);
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    lines->GetCurrentCell(size, ids);
-    std::array<double, 2> before{};
-    for (vtkIdType k = 0; k < size; ++k)
+  forEachLine(paths,
+    [&](vtkIdType cell, std::span<const vtkIdType> ids)
     {
-      double p[3];
-      paths->GetPoint(ids[k], p);
-      const std::array<double, 2> here{ tiling.columnAt(p[0]), tiling.rowAt(p[1]) };
-      const double far =
-        k > 0 ? std::max(std::abs(here[0] - before[0]), std::abs(here[1] - before[1])) : 0.0;
-      // A path may leap over tiles.
-      const int steps =
-        std::isfinite(far) ? std::max(1, int(std::min(far, 1e6) / (0.5 * kSide)) + 1) : 0;
-      for (int s = k > 0 ? 1 : steps; s <= steps && steps > 0; ++s)
+      const double half = width ? 0.5 * width->GetComponent(cell, 0) : 0.0;
+      const double margin = std::max(kBesideNodes, 2.0 + (half + kBeside) / tiling.cellSize);
+      std::array<double, 2> before{};
+      for (std::size_t k = 0; k < ids.size(); ++k)
       {
-        const double share = double(s) / steps;
-        markAround(tiling, before[0] + share * (here[0] - before[0]),
-          before[1] + share * (here[1] - before[1]), margin, wanted);
+        double p[3];
+        paths->GetPoint(ids[k], p);
+        const std::array<double, 2> here{ tiling.columnAt(p[0]), tiling.rowAt(p[1]) };
+        const double far =
+          k > 0 ? std::max(std::abs(here[0] - before[0]), std::abs(here[1] - before[1])) : 0.0;
+        // A path may leap over tiles.
+        const int steps =
+          std::isfinite(far) ? std::max(1, int(std::min(far, 1e6) / (0.5 * kSide)) + 1) : 0;
+        for (int s = k > 0 ? 1 : steps; s <= steps && steps > 0; ++s)
+        {
+          const double share = double(s) / steps;
+          markAround(tiling, before[0] + share * (here[0] - before[0]),
+            before[1] + share * (here[1] - before[1]), margin, wanted);
+        }
+        before = here;
       }
-      before = here;
-    }
-  }
+    });
   return wanted;
 }
 

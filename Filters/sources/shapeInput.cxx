@@ -3,39 +3,17 @@
 #include "base/errors.h"
 #include "mesh/MeshBuilder.h"
 #include "mesh/meshFile.h"
+#include "shared/cells.h"
 #include "shared/inputs.h"
 
-#include "vtkCellArray.h"
-#include "vtkCellArrayIterator.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace rockfall::filters
 {
-
-namespace
-{
-
-template <typename Use>
-void forEachCell(vtkCellArray* cells, const Use& use)
-{
-  std::vector<std::int64_t> ids;
-  const auto walk = vtk::TakeSmartPointer(cells->NewIterator());
-  for (walk->GoToFirstCell(); !walk->IsDoneWithTraversal(); walk->GoToNextCell())
-  {
-    vtkIdType size = 0;
-    const vtkIdType* points = nullptr;
-    walk->GetCurrentCell(size, points);
-    ids.assign(points, points + size);
-    use(ids);
-  }
-}
-
-} // namespace
 
 Mesh meshOf(vtkPolyData* surface)
 {
@@ -44,8 +22,11 @@ Mesh meshOf(vtkPolyData* surface)
   {
     mesh.addPoint(Vec3(surface->GetPoint(k)));
   }
-  forEachCell(surface->GetPolys(), [&](const auto& ids) { mesh.addFace(ids); });
-  forEachCell(surface->GetStrips(), [&](const auto& ids) { mesh.addStrip(ids); });
+  using Numbers = std::vector<std::int64_t>;
+  forEachCell(surface->GetPolys(), 0,
+    [&](vtkIdType, auto ids) { mesh.addFace(Numbers(ids.begin(), ids.end())); });
+  forEachCell(surface->GetStrips(), 0,
+    [&](vtkIdType, auto ids) { mesh.addStrip(Numbers(ids.begin(), ids.end())); });
   const bool single = surface->GetPoints() && surface->GetPoints()->GetDataType() == VTK_FLOAT;
   Mesh made = mesh.finish(single);
   checkMesh(made, kShapeInput);
