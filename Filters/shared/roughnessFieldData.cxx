@@ -1,14 +1,13 @@
 #include "shared/roughnessFieldData.h"
 
 #include "base/errors.h"
-#include "base/text/numberText.h"
+#include "shared/arrays.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 
 #include <array>
-#include <cmath>
 
 namespace rockfall::filters
 {
@@ -101,26 +100,18 @@ std::vector<Roughness> readAll(vtkFieldData* fieldData, const char* name, int co
 
 void writeRoughness(const Terrain& terrain, vtkFieldData* fieldData)
 {
-  const auto add = [&](const char* name)
-  {
-    vtkNew<vtkDoubleArray> array;
-    array->SetName(name);
-    fieldData->AddArray(array);
-    return array;
-  };
-  const auto own = add(roughnessName);
-  own->SetNumberOfComponents(numbersOfOne);
-  own->InsertNextTuple(numbersOf(terrain.roughness()).data());
+  addArray<vtkDoubleArray>(fieldData, roughnessName, numbersOfOne)
+    ->InsertNextTuple(numbersOf(terrain.roughness()).data());
   if (!terrain.restitutionClasses().roughness.empty())
   {
-    const auto classes = add(classRoughnessName);
-    classes->SetNumberOfComponents(numbersOfOne);
+    const auto classes = addArray<vtkDoubleArray>(fieldData, classRoughnessName, numbersOfOne);
     for (const Roughness& r : terrain.restitutionClasses().roughness)
     {
       classes->InsertNextTuple(numbersOf(r).data());
     }
   }
-  add(deviationPerName)->InsertNextValue(double(terrain.deviationPer()));
+  addArray<vtkDoubleArray>(fieldData, deviationPerName)
+    ->InsertNextValue(double(terrain.deviationPer()));
   writePer(terrain.restitutionClasses(), restitutionPerName, fieldData);
   writePer(terrain.jointClasses(), jointPerName, fieldData);
 }

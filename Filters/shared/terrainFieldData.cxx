@@ -11,7 +11,6 @@
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -69,11 +68,7 @@ using SharedClasses = Shared<vtkUnsignedCharArray, std::uint8_t>;
 
 void addNumbers(vtkFieldData* fieldData, const char* name, std::initializer_list<double> values)
 {
-  vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->SetNumberOfComponents(int(values.size()));
-  array->InsertNextTuple(values.begin());
-  fieldData->AddArray(array);
+  addArray<vtkDoubleArray>(fieldData, name, int(values.size()))->InsertNextTuple(values.begin());
 }
 
 constexpr int materialNumbers = 10;
@@ -203,9 +198,7 @@ void takeJoint(const double* numbers, SurfaceMaterial& m)
 void writeYielding(const Terrain& terrain, vtkFieldData* fieldData)
 {
   const auto fields = yieldingFields();
-  vtkNew<vtkDoubleArray> table;
-  table->SetName(yieldingName);
-  table->SetNumberOfComponents(int(fields.size()));
+  const auto table = addArray<vtkDoubleArray>(fieldData, yieldingName, int(fields.size()));
   for (int k = 0; k <= terrain.restitutionClasses().count(); ++k)
   {
     std::vector<double> row;
@@ -215,7 +208,6 @@ void writeYielding(const Terrain& terrain, vtkFieldData* fieldData)
     }
     table->InsertNextTuple(row.data());
   }
-  fieldData->AddArray(table);
 }
 
 /// Hard ground everywhere if there is no such array.
@@ -250,22 +242,14 @@ void writeClasses(const MaterialClasses& classes, const ClassNames& arrays, int 
   {
     return;
   }
-  vtkNew<SharedClasses> cells;
-  cells->SetName(arrays.cells);
-  cells->Share(terrain, classes.cells);
-  fieldData->AddArray(cells);
-  vtkNew<vtkDoubleArray> table;
-  table->SetName(arrays.numbers);
-  table->SetNumberOfComponents(count);
-  vtkNew<vtkStringArray> names;
-  names->SetName(arrays.names);
+  addArray<SharedClasses>(fieldData, arrays.cells)->Share(terrain, classes.cells);
+  const auto table = addArray<vtkDoubleArray>(fieldData, arrays.numbers, count);
+  const auto names = addArray<vtkStringArray>(fieldData, arrays.names);
   for (std::size_t k = 0; k < classes.materials.size(); ++k)
   {
     table->InsertNextTuple(numbersOf(classes.materials[k]).data());
     names->InsertNextValue(classes.names[k]);
   }
-  fieldData->AddArray(table);
-  fieldData->AddArray(names);
 }
 
 /// Nothing if there are no such classes.
@@ -369,20 +353,14 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   writeFileUnits(grid.fileUnits, fieldData);
   const Vec3 origin = grid.origin();
   addNumbers(fieldData, kOriginArray, { origin.x(), origin.y(), origin.z() });
-  vtkNew<vtkStringArray> crs;
-  crs->SetName(kCrsArray);
-  crs->InsertNextValue(grid.crs);
-  fieldData->AddArray(crs);
+  addArray<vtkStringArray>(fieldData, kCrsArray)->InsertNextValue(grid.crs);
   writeClasses(terrain->restitutionClasses(), restitutionNames, restitutionNumbers, restitutionOf,
     terrain, fieldData);
   writeYielding(*terrain, fieldData);
   writeClasses(terrain->jointClasses(), jointNames, jointNumbers, jointOf, terrain, fieldData);
   writeRoughness(*terrain, fieldData);
   writeStructures(*terrain, fieldData);
-  vtkNew<SharedHeights> heights;
-  heights->SetName(kHeightsArray);
-  heights->Share(terrain, terrain->heights());
-  fieldData->AddArray(heights);
+  addArray<SharedHeights>(fieldData, kHeightsArray)->Share(terrain, terrain->heights());
 }
 
 Terrain readTerrain(vtkPolyData* mesh, bool withMesh)

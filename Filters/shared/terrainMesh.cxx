@@ -1,5 +1,7 @@
 #include "shared/terrainMesh.h"
 
+#include "shared/arrays.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -93,20 +95,16 @@ void addMaterialArrays(vtkPolyData* mesh, vtkIdTypeArray* cfes, const MaterialCl
   {
     ofClass.push_back(valueOf(number));
   }
-  vtkNew<vtkUnsignedCharArray> numbers;
-  numbers->SetName(className);
-  numbers->SetNumberOfValues(triangles);
-  vtkNew<vtkDoubleArray> values;
-  values->SetName(valueName);
+  const auto values = addArray<vtkDoubleArray>(mesh->GetCellData(), valueName);
   values->SetNumberOfValues(triangles);
+  const auto numbers = addArray<vtkUnsignedCharArray>(mesh->GetCellData(), className);
+  numbers->SetNumberOfValues(triangles);
   for (vtkIdType cell = 0; cell < triangles; ++cell)
   {
     const int number = classes.at(cfes->GetValue(cell));
     numbers->SetValue(cell, static_cast<unsigned char>(number));
     values->SetValue(cell, ofClass[std::size_t(number)]);
   }
-  mesh->GetCellData()->AddArray(values);
-  mesh->GetCellData()->AddArray(numbers);
 }
 
 } // namespace
@@ -177,8 +175,7 @@ void makeTerrainMesh(const Terrain& terrain, int stride, vtkPolyData* mesh)
   offsets->SetNumberOfValues(triangles + 1);
   vtkNew<vtkIdTypeArray> connectivity;
   connectivity->SetNumberOfValues(3 * triangles);
-  vtkNew<vtkIdTypeArray> numbers;
-  numbers->SetName("CFEId");
+  const auto numbers = addArray<vtkIdTypeArray>(mesh->GetCellData(), "CFEId");
   numbers->SetNumberOfValues(triangles);
   vtkIdType cell = 0;
   coarse.forEachTriangle(
@@ -199,7 +196,6 @@ void makeTerrainMesh(const Terrain& terrain, int stride, vtkPolyData* mesh)
   mesh->SetPoints(points);
   mesh->SetPolys(polygons);
   mesh->GetPointData()->SetScalars(elevation);
-  mesh->GetCellData()->AddArray(numbers);
   addMaterialArrays(mesh, numbers, terrain.restitutionClasses(), "RestitutionClass",
     "RestitutionCoefficient",
     [&](int number) { return terrain.restitutionMaterial(number).restitution; });

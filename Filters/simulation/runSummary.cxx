@@ -111,13 +111,11 @@ void renameSources(const RunFrame& frame, vtkTable* summary)
     return; // of no trajectory
   }
   // Another array: whoever has the table of before keeps its names.
-  vtkNew<vtkStringArray> names;
-  names->SetName("SourceName");
+  const auto names = addArray<vtkStringArray>(summary->GetRowData(), "SourceName");
   for (vtkIdType row = 0; row < rocks->GetNumberOfTuples(); ++row)
   {
     names->InsertNextValue(frame.sourceNames[std::size_t(rocks->GetComponent(row, 0))]);
   }
-  summary->GetRowData()->AddArray(names);
 }
 
 } // namespace rockfall::filters

@@ -30,7 +30,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 vtkStandardNewMacro(vtkDEMToCFESource);
 
@@ -287,8 +286,7 @@ int vtkDEMToCFESource::RequestData(
     vtkNew<vtkPolyData> mesh;
     rockfall::filters::makeTerrainMesh(*terrain, stride, mesh);
     rockfall::filters::writeTerrain(terrain, stride, mesh->GetFieldData());
-    vtkNew<vtkStringArray> kept;
-    kept->SetName("Notes");
+    const auto kept = rockfall::filters::addArray<vtkStringArray>(mesh->GetFieldData(), "Notes");
     for (const std::string& note : notes)
     {
       // A note on a layer or a table begins with its name.
@@ -300,12 +298,9 @@ int vtkDEMToCFESource::RequestData(
         named ? note : (this->FileName.empty() ? "DEM to CFE Mesh" : this->FileName) + ": " + note);
       kept->InsertNextValue(note);
     }
-    mesh->GetFieldData()->AddArray(kept);
-    vtkNew<vtkStringArray> ground;
-    ground->SetName(groundName);
-    ground->InsertNextValue(
-      rockfall::groundTitle(this->Preset, terrain->material(), terrain->restitutionClasses()));
-    mesh->GetFieldData()->AddArray(ground);
+    rockfall::filters::addArray<vtkStringArray>(mesh->GetFieldData(), groundName)
+      ->InsertNextValue(
+        rockfall::groundTitle(this->Preset, terrain->material(), terrain->restitutionClasses()));
     rockfall::filters::copyCoordinateSystem(mesh->GetFieldData(), structures->GetFieldData());
     vtkPolyData::GetData(outputVector, 1)->ShallowCopy(structures);
     rockfall::filters::rememberRanges(mesh);
