@@ -44,9 +44,7 @@ std::string geoJson(const std::vector<Contour>& contours, const std::string& pro
     text += "{\"type\":\"Feature\",\"properties\":{";
     if (!property.empty())
     {
-      text += '"';
-      text += property;
-      text += "\":" + exactText(contours[i].height);
+      text += "\"" + property + "\":" + exactText(contours[i].height);
     }
     text += "},\"geometry\":{\"type\":\"LineString\",\"coordinates\":[";
     for (std::size_t k = 0; k < contours[i].points.size(); ++k)
@@ -56,8 +54,7 @@ std::string geoJson(const std::vector<Contour>& contours, const std::string& pro
       text += exactText(p.x) + "," + exactText(p.y);
       if (property.empty())
       {
-        text += ',';
-        text += exactText(contours[i].height);
+        text += "," + exactText(contours[i].height);
       }
       text += "]";
     }
