@@ -371,6 +371,7 @@ void appendCrossings(const RockPath& path, const CollectorLine& line, int lineNu
     crossing.blockId = path.blockId;
     crossing.piece = path.piece;
     crossing.number = number++;
+    crossing.top = topOverGround(crossing, path.width);
     crossings.push_back(crossing);
   }
 }
@@ -403,22 +404,22 @@ LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
   {
     const Crossing& rock = *first[k];
     DesignPassing largest;
-    largest.top = std::numeric_limits<double>::quiet_NaN();
-    bool held = true;
+    largest.top = rock.top;
+    double height = std::numeric_limits<double>::quiet_NaN();
     for (; k < first.size() && rockOf(*first[k]) == rockOf(rock); ++k)
     {
       const Crossing& piece = *first[k];
-      largest.takeLarger(piece.kineticEnergy, piece.velocity.norm(), piece.heightOverGround);
-      held = held && piece.heightOverGround <= line.barrierHeight &&
-        piece.kineticEnergy <= line.barrierCapacity;
+      largest.takeLarger(piece.kineticEnergy, piece.velocity.norm(), piece.top);
+      height = std::fmax(height, piece.heightOverGround);
     }
     summary.energies.push_back(largest.energy);
     speeds.push_back(largest.speed);
-    if (!std::isnan(largest.top))
+    if (!std::isnan(height))
     {
-      summary.heights.push_back(largest.top);
+      summary.heights.push_back(height);
     }
-    summary.caught += held;
+    summary.caught +=
+      outcomeOf({ &largest, 1 }, line.barrierHeight, line.barrierCapacity).caught.rocks;
   }
   summary.rocks = int(summary.energies.size());
   summary.highestQuantile = highestQuantile(summary.energies.size());

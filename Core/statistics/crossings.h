@@ -47,6 +47,7 @@ struct Crossing
   double heightOverGround = 0.0;    ///< m, NaN where there is no ground.
   /// Of the centroid over the ground straight under it, m; NaN without a terrain there.
   double centreOverGround = std::numeric_limits<double>::quiet_NaN();
+  double top = std::numeric_limits<double>::quiet_NaN(); ///< topOverGround
   /// Between the horizontal velocity and the line's normal on the side that the rock goes to, rad:
   /// 0 straight across, positive if it goes towards the line's end, ±π/2 along it.
   double horizontalAngle = 0.0;
@@ -77,8 +78,7 @@ struct LineSummary
   SampleStatistics energy;
   SampleStatistics height;       ///< m
   SampleStatistics speed;        ///< m/s
-  int caught = 0;                ///< Rocks whose height and energy are at most the barrier's
-                                 ///< at the first passing.
+  int caught = 0;                ///< As outcomeOf has it, at the first passing.
   double caughtShare = 0.0;      ///< Of those that passed.
   double caughtShareError = 0.0; ///< binomialError.
   std::vector<double> energies;  ///< Ascending, J.
@@ -86,8 +86,7 @@ struct LineSummary
 };
 
 /// `crossings`: those of all lines and paths, of which `lineNumber`'s count. `released`: rocks ×
-/// iterations. A rock without a height over ground is not caught. Results do not depend on the
-/// order of `crossings`.
+/// iterations. Results do not depend on the order of `crossings`.
 LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
   std::span<const Crossing> crossings, std::int64_t released);
 

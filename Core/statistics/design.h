@@ -84,12 +84,13 @@ struct DesignPassing
   double top = 0.0;       ///< Height of its highest point, m; NaN if it is not known.
   double frequency = 0.0; ///< 1/a; NaN if it is not known.
 
-  /// A rock that broke counts once, with the largest values of its pieces.
+  /// A rock that broke counts once, with the largest values of its pieces; its top is known if that
+  /// of each piece is.
   void takeLarger(double ofEnergy, double ofSpeed, double ofTop)
   {
     energy = std::max(energy, ofEnergy);
     speed = std::max(speed, ofSpeed);
-    top = std::fmax(top, ofTop);
+    top = ofTop > top || std::isnan(ofTop) ? ofTop : top;
   }
 };
 

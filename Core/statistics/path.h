@@ -38,7 +38,7 @@ struct RockPath
   /// kg. NaN if it is not known: then energy between two points is interpolated in time.
   double mass = std::numeric_limits<double>::quiet_NaN();
   /// m; a map's cells that are narrower are touched if they are under it. 0: it
-  /// is a point.
+  /// is a point; NaN: as a point, but how high its top is is not known.
   double width = 0.0;
   bool rested = false;               ///< Ends at rest, so that its end is a stopping point.
   std::span<const PathPoint> points; ///< Times never descend.

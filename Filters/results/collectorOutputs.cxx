@@ -254,13 +254,7 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   columns.add("HeightOverGround", [](C c) { return c.crossing.heightOverGround; });
   columns.add("HorizontalAngle", [](C c) { return degrees(c.crossing.horizontalAngle); });
   columns.add("VerticalAngle", [](C c) { return degrees(c.crossing.verticalAngle); });
-  vtkDataArray* width = trajectories->GetCellData()->GetArray("Width");
-  columns.add("TopHeight",
-    [width](C c)
-    {
-      return topOverGround(
-        c.crossing, width ? width->GetTuple1(c.cell) : std::numeric_limits<double>::quiet_NaN());
-    });
+  columns.add("TopHeight", [](C c) { return c.crossing.top; });
   for (const CollectedCrossing& collected : crossings)
   {
     stayWanted();

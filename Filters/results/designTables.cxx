@@ -103,13 +103,7 @@ std::vector<DesignLine> designLines(
     lines.push_back({ line, {} });
   }
   vtkPointData* data = points->GetPointData();
-  vtkDataArray *top = data->GetArray("TopHeight"), *source = data->GetArray("SourceId"),
-               *frequency = data->GetArray("Frequency");
-  if (!merged.crossings.empty() && !top)
-  {
-    throw DataError("The Input's crossings have no array TopHeight: they were made by an earlier "
-                    "version; make them anew");
-  }
+  vtkDataArray *source = data->GetArray("SourceId"), *frequency = data->GetArray("Frequency");
   const bool together = annualFrequency > 0.0;
   const auto rocks = together ? std::nullopt : frequenciesOf(merged, frequency);
   const double share = together ? annualFrequency / double(merged.released.size()) : kNan;
@@ -126,7 +120,7 @@ std::vector<DesignLine> designLines(
           std::tie(c.iteration, c.rock, c.blockId))
       {
         lines[std::size_t(c.line)].passings.back().takeLarger(
-          c.kineticEnergy, c.velocity.norm(), top->GetTuple1(id));
+          c.kineticEnergy, c.velocity.norm(), c.top);
         continue;
       }
       Passage of;
@@ -134,7 +128,7 @@ std::vector<DesignLine> designLines(
       of.blockId = c.blockId;
       lines[std::size_t(c.line)].passings.push_back(
         { source ? std::int64_t(source->GetTuple1(id)) : -1, c.kineticEnergy, c.velocity.norm(),
-          top->GetTuple1(id), rocks ? rocks->weight(of) : share });
+          c.top, rocks ? rocks->weight(of) : share });
     }
   }
   return lines;

@@ -25,7 +25,7 @@ struct DesignLine
 
 /// Of crossings that mergeCrossings made, with `points`. `annualFrequency` (1/a) is that of all
 /// releases together; 0 takes the point array Frequency, NaN if there is none. Throws DataError if
-/// TopHeight is missing or a frequency bad.
+/// a frequency is bad.
 std::vector<DesignLine> designLines(
   const MergedCrossings& merged, vtkPolyData* points, double annualFrequency);
 

@@ -124,6 +124,12 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
                *height = one("HeightOverGround"),
                *velocity = crossingNumbers(fields, "Velocity", 3, input),
                *piece = fields->GetArray("Piece");
+  vtkDataArray* top = fields->GetArray("TopHeight");
+  if (!top)
+  {
+    throw DataError(numbered(input) +
+      " has no array TopHeight: the crossings were made by an earlier version; make them anew");
+  }
   for (vtkIdType id = 0; id < data->GetNumberOfPoints(); ++id)
   {
     Place& place = places.emplace_back();
@@ -138,6 +144,7 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
     c.number = int(number->GetTuple1(id));
     c.kineticEnergy = energy->GetTuple1(id);
     c.heightOverGround = height->GetTuple1(id);
+    c.top = top->GetTuple1(id);
     velocity->GetTuple(id, c.velocity.data());
     if (c.line < 0 || std::size_t(c.line) >= lines.size())
     {

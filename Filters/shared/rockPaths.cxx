@@ -13,6 +13,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -121,10 +122,8 @@ void forPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, vt
     {
       rockPath.mass = mass->GetComponent(cell, 0);
     }
-    if (width)
-    {
-      rockPath.width = width->GetComponent(cell, 0);
-    }
+    rockPath.width =
+      width ? width->GetComponent(cell, 0) : std::numeric_limits<double>::quiet_NaN();
     rockPath.points = path;
     use(rockPath, cell);
   }

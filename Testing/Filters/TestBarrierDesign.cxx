@@ -7,6 +7,7 @@
 #include "vtkTrajectoryCollector.h"
 
 #include <cmath>
+#include <initializer_list>
 
 namespace
 {
@@ -137,7 +138,8 @@ TEST_F(TestBarrierDesign, CharacteristicAndDesignValues)
 
 TEST_F(TestBarrierDesign, ClassesAndTheirFrequencies)
 {
-  this->Filter->SetInputData(this->Collect()->GetOutput());
+  const auto collector = this->Collect();
+  this->Filter->SetInputData(collector->GetOutput());
   auto* table =
     vtkTable::SafeDownCast((this->Filter->Update(), this->Filter->GetOutputDataObject(1)));
   ASSERT_EQ(table->GetNumberOfRows(), 9);
@@ -148,6 +150,15 @@ TEST_F(TestBarrierDesign, ClassesAndTheirFrequencies)
   EXPECT_EQ(this->Number(1, "Caught", 0), 5);
   EXPECT_EQ(this->Number(1, "Over", 0), 2);
   EXPECT_EQ(this->Number(1, "TooStrong", 0), 3);
+  vtkNew<vtkMergeCollectors> merge;
+  merge->SetInputData(collector->GetOutput());
+  merge->Update();
+  for (vtkAlgorithm* lines : std::initializer_list<vtkAlgorithm*>{ collector, merge })
+  {
+    auto* of = vtkTable::SafeDownCast(lines->GetOutputDataObject(1));
+    EXPECT_EQ(of->GetValueByName(0, "Caught").ToInt(), 5); // the same rocks
+    EXPECT_EQ(of->GetValueByName(0, "CaughtShare").ToDouble(), 0.5);
+  }
   EXPECT_EQ(this->Number(1, "CaughtShare", 0), 0.5);
   EXPECT_EQ(this->Number(1, "CaughtFrequency", 0), (4 * 0.25 + 0.0625) / 2);
   EXPECT_EQ(this->Number(1, "OverFrequency", 0), 2 * 0.0625 / 2);

@@ -38,14 +38,17 @@ public:
     {
       this->Add<vtkIntArray>(this->Data->GetCellData(), name, 1);
     }
-    this->Add<vtkDoubleArray>(this->Data->GetCellData(), "Mass", 1);
+    for (const char* name : { "Mass", "Width" })
+    {
+      this->Add<vtkDoubleArray>(this->Data->GetCellData(), name, 1);
+    }
     vtkNew<vtkStringArray> crs;
     crs->SetName("TerrainCRS");
     crs->InsertNextValue("EPSG:32632");
     this->Data->GetFieldData()->AddArray(crs);
   }
 
-  /// Straight and level along x, at `speed` m/s from (x, y, z) to x + length, with 1000 kg.
+  /// Straight and level along x, at `speed` m/s from (x, y, z) to x + length, points of 1000 kg.
   void AddLevel(int iteration, int rock, std::array<double, 3> from, double length, double speed,
     double height = 2.0, int fate = 1)
   {
@@ -67,6 +70,7 @@ public:
     cells->GetArray("Iteration")->InsertNextTuple1(iteration);
     cells->GetArray("Fate")->InsertNextTuple1(fate);
     cells->GetArray("Mass")->InsertNextTuple1(1000.0);
+    cells->GetArray("Width")->InsertNextTuple1(0.0);
     this->Lines->Modified();
     this->Data->Modified();
   }

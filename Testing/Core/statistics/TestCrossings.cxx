@@ -360,6 +360,34 @@ TEST(Crossings, BruteForceAlongRandomCurves)
   EXPECT_GT(all, trials);
 }
 
+TEST(Crossings, ABarrierCatchesWhatIsNoHigherWithItsTop)
+{
+  // 2 m high, its lowest point at 3 m; the barrier has 4 m, then 5.
+  CollectorLine line = lineOf({ { 5, 0 }, { 5, 100 } });
+  line.barrierCapacity = 100.0;
+  std::vector<PathPoint> points(2);
+  for (PathPoint& p : points)
+  {
+    p.velocity = Vec3(10, 0, 0);
+    p.heightOverGround = 3.0;
+  }
+  points[0].position = Vec3(0, 1, 20);
+  points[1].position = Vec3(10, 1, 20);
+  points[1].time = 1.0;
+  const auto caught = [&](double width, double height)
+  {
+    RockPath path = rockPathOf(points, 0, 0, 1.0);
+    path.width = width;
+    std::vector<Crossing> crossings;
+    appendCrossings(path, line, 0, nullptr, crossings);
+    line.barrierHeight = height;
+    return summarizeLine(line, 0, crossings, 1).caught;
+  };
+  EXPECT_EQ(caught(2.0, 4.0), 0);
+  EXPECT_EQ(caught(2.0, 5.0), 1);
+  EXPECT_EQ(caught(std::numeric_limits<double>::quiet_NaN(), 50.0), 0); // it is not known
+}
+
 TEST(Crossings, WhatABarrierCatches)
 {
   // Ten rocks at heights 0.5, 1.5, … 9.5 m and speeds 1 … 10 m/s through a barrier of 5 m and 32 J:
