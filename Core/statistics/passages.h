@@ -84,6 +84,7 @@ struct Passage
   std::int64_t blockId = 0; ///< Tells the rocks of two runs from each other.
   Maxima maxima{};          ///< On the way through the cell.
 
+  double degrees() const { return 90.0 / kAngleSteps * angle; }
   void enter(unsigned times) { entries = std::min<unsigned>(entries + times, kMostEntries); }
   /// Takes in another stay of the rock, which has entered `times`.
   void join(const Passage& other, unsigned times);

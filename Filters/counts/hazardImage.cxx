@@ -224,18 +224,28 @@ public:
   /// Whether the cell that was set last was left empty.
   bool isLeftOut() const { return isLeftOut_; }
 
+  /// Whether a passage is dropped by its angle. Those of a cell are asked for before it is set.
+  bool drops(const Passage& passage)
+  {
+    const bool dropped = passage.degrees() < options_.leastAngle;
+    if (dropped)
+    {
+      ++dropped_;
+      this->leaveOut(passage.cell); // unless another one of it is kept
+    }
+    return dropped;
+  }
+
   void set(const CellSummary& cell)
   {
     const vtkIdType id = cell.cell;
-    isLeftOut_ = cell.reach < options_.leastReach || cell.angleLeast < options_.leastAngle;
+    isLeftOut_ = cell.reach < options_.leastReach;
     if (isLeftOut_)
     {
-      ++leftOut_;
-      // The limit of a cell where nothing came would be too low here.
-      reachError_->SetValue(id, std::numeric_limits<float>::quiet_NaN());
-      reachScatter_->SetValue(id, std::numeric_limits<float>::quiet_NaN());
+      this->leaveOut(id);
       return;
     }
+    leftOut_ -= std::isnan(reachError_->GetValue(id));
     angleLeast_->SetValue(id, float(cell.angleLeast));
     angleMean_->SetValue(id, float(cell.angleMean));
     passages_->SetValue(id, cell.passages);
@@ -268,12 +278,17 @@ public:
     {
       askAfterFrequency(options_.frequency.annualFrequency, notes);
     }
+    const std::string angle = "LeastAngle, " + numberText(options_.leastAngle) + " degrees";
+    if (dropped_ > 0)
+    {
+      notes.push_back(std::to_string(dropped_) +
+        " passages of rocks through cells are dropped: their energy-line angle is below " + angle);
+    }
     if (leftOut_ > 0)
     {
       notes.push_back(std::to_string(leftOut_) +
         " cells that rocks passed are left empty: their reach is below LeastReach, " +
-        numberText(options_.leastReach) + ", or their energy-line angle below LeastAngle, " +
-        numberText(options_.leastAngle) + " degrees");
+        numberText(options_.leastReach) + ", or all energy-line angles are below " + angle);
     }
     return notes;
   }
@@ -290,6 +305,14 @@ public:
   }
 
 private:
+  /// The limits of a cell where nothing came would be too low here.
+  void leaveOut(vtkIdType id)
+  {
+    leftOut_ += !std::isnan(reachError_->GetValue(id));
+    reachError_->SetValue(id, std::numeric_limits<float>::quiet_NaN());
+    reachScatter_->SetValue(id, std::numeric_limits<float>::quiet_NaN());
+  }
+
   std::vector<std::string> quantileNotes() const
   {
     const int least = highest_ > 0.0 ? leastForQuantile(highest_) : 0;
@@ -305,6 +328,7 @@ private:
   const HazardMapOptions& options_;
   bool isLeftOut_ = false;
   std::int64_t leftOut_ = 0; ///< Cells.
+  std::int64_t dropped_ = 0; ///< Passages.
   double highest_ = 0.0;     ///< Of the quantiles that are chosen.
   int most_ = 0;             ///< Rocks in a cell.
   vtkSmartPointer<vtkIntArray> quantile_;
@@ -375,8 +399,11 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
   forEach(
     [&](const Passage& passage)
     {
-      summarizer.add(passage);
-      frequencyLayers.add(passage);
+      if (!layers.drops(passage))
+      {
+        summarizer.add(passage);
+        frequencyLayers.add(passage);
+      }
     });
   summarizer.finish();
   frequencyLayers.finish();

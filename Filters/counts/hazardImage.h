@@ -50,9 +50,8 @@ struct HazardMapOptions
   bool rockWidth = true; ///< Rocks wider than a cell touch every cell under them.
   ChosenStatistics statistics = usualStatistics;
   FrequencyOptions frequency = {};
-  /// Cells with a lower reach probability, or a smaller least energy-line angle (degrees), are left
-  /// empty.
-  double leastReach = 0.0, leastAngle = 0.0;
+  double leastReach = 0.0; ///< Cells with a lower reach probability are left empty.
+  double leastAngle = 0.0; ///< Passages with a smaller energy-line angle are dropped, degrees.
 };
 
 /// Fills `image`: see vtkRockfallHazardMap. `terrain` may be null. Throws rockfall::Error.

@@ -64,8 +64,9 @@ public:
 
   ///@{
   /**
-   * Cells that a smaller share of the rocks reaches (0 to 1), or whose smallest energy-line angle is
-   * smaller (0 to 90 degrees), are left empty, and the map says so. 0 by default.
+   * Cells that a smaller share of the rocks reaches (0 to 1) are left empty, and rocks do not count
+   * in cells where their energy-line angle is smaller (0 to 90 degrees); the map says so. 0 by
+   * default.
    */
   vtkSetMacro(LeastReach, double);
   vtkGetMacro(LeastReach, double);

@@ -246,7 +246,20 @@ TEST_F(TestRockfallHazardMap, EnergyLineAnglesAndWhatIsLeftEmpty)
   EXPECT_TRUE(std::isnan(this->At("EnergyLineAngleMean", 7, 13)));
   EXPECT_FALSE(this->Map()->GetFieldData()->GetArray("LeastReach"));
 
-  // What one rock of three reaches, and what is flatter than 50°, is left empty.
+  // Without what is flatter than 50°: of two rocks one is left.
+  this->Filter->SetAnnualFrequency(0.25);
+  this->Filter->SetLeastAngle(50.0);
+  EXPECT_EQ(this->At("Rocks", 7, 3), 1.0);
+  EXPECT_NEAR(this->At("EnergyLineAngleMinimum", 7, 3), steep, 0.001);
+  EXPECT_FLOAT_EQ(float(this->At("AnnualFrequency", 7, 3)), 0.25F / 3.0F);
+  EXPECT_FALSE(std::isnan(this->At("ReachProbabilityError", 7, 3)));
+  EXPECT_EQ(this->At("Rocks", 2, 13), 0.0);
+  EXPECT_TRUE(std::isnan(this->At("ReachProbabilityError", 2, 13)));
+  EXPECT_EQ(value(this->Map()->GetFieldData(), "CellsLeftEmpty"), 1.0);
+  this->Filter->SetAnnualFrequency(0.0);
+  this->Filter->SetLeastAngle(0.0);
+
+  // What one rock of three reaches is left empty.
   this->Filter->SetLeastReach(0.5);
   EXPECT_EQ(this->At("Rocks", 2, 13), 0.0);
   EXPECT_TRUE(std::isnan(this->At("ReachProbabilityError", 2, 13)));
