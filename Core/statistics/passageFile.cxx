@@ -168,6 +168,32 @@ void readFrequencies(std::istream& in, PassageFile& file)
   }
 }
 
+void readSources(std::istream& in, PassageFile& file)
+{
+  const auto rocks = get<std::uint64_t>(in);
+  for (std::uint64_t k = 0; k < rocks && in; ++k)
+  {
+    const auto rock = get<std::int64_t>(in);
+    const auto block = get<std::int64_t>(in);
+    RockSources::Release release;
+    release.source = get<std::int64_t>(in);
+    release.iterations = get<std::int64_t>(in);
+    if (!in)
+    {
+      return; // told by the length
+    }
+    if (rock < 0 || rock > std::numeric_limits<int>::max() || release.iterations < 1 ||
+      release.iterations > std::numeric_limits<int>::max() ||
+      file.sources.releases().contains({ int(rock), block }))
+    {
+      failDamaged(file.fileName,
+        "the source of rock " + std::to_string(rock) + " released it in " +
+          std::to_string(release.iterations) + " iterations");
+    }
+    file.sources.add(int(rock), block, release);
+  }
+}
+
 /// Where the parts of `size` bytes of file begin; false if they do not end where it does.
 bool readParts(std::istream& in, std::uint64_t size, PassageFile& file)
 {
@@ -312,6 +338,7 @@ PassageFile readPassageFile(const std::string& fileName)
   readReleases(in, file);
   readLost(in, file);
   readFrequencies(in, file);
+  readSources(in, file);
   file.passages = get<std::uint64_t>(in);
   if (!in || !readParts(in, size, file))
   {
@@ -359,6 +386,16 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
     runs.push_back(file.run);
   }
   notes_ = askAfterRuns(runs, [this](std::size_t k) { return files_[k].fileName; });
+}
+
+RockSources PassageFiles::sources() const
+{
+  RockSources all;
+  for (const PassageFile& file : files_)
+  {
+    all.add(file.sources);
+  }
+  return all;
 }
 
 void PassageFiles::forEach(const std::function<void(const Passage&)>& use) const

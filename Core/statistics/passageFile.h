@@ -4,7 +4,7 @@
 /// Passages of a run in a file, so that the map of many runs can be made without having any of them
 /// in memory.
 ///
-/// A file has, little endian: the 8 bytes "RFPASS06"; columns and rows (int32
+/// A file has, little endian: the 8 bytes "RFPASS07"; columns and rows (int32
 /// each); cell size, west, south (double); x, y, z of the local origin
 /// (double); bytes of the CRS (uint64) and the CRS as WKT; number of the slope's content (uint64, 0:
 /// not known); bytes of the run's properties (uint64) and their text; number of iterations
@@ -13,8 +13,9 @@
 /// nodata, unmoved (int64), the latest time of one that still moved (double), the
 /// pieces that rocks broke into (int64);
 /// number of rocks whose frequency is known (uint64), of all or none, and for each its number,
-/// block, iterations that released it (int64) and frequency (double, 1/a); number of passages
-/// (uint64), and the passages in their order, in parts of kPassagesOfPart, each packed by itself
+/// block, iterations that released it (int64) and frequency (double, 1/a); number of rocks whose
+/// source is known (uint64), of all or none, and for each its number, block, source and iterations
+/// that released it (int64); number of passages (uint64), and the passages in their order, in parts of kPassagesOfPart, each packed by itself
 /// (gis/base/packing.h): first the bytes that each part takes (uint32), then the parts. A passage
 /// is 40 bytes: cell (uint32), entries (15 bits), whether the rock came to rest there (1) and the
 /// energy-line angle (16), iteration, rock (int32), block (int64), the four largest values (float).
@@ -24,6 +25,7 @@
 #include "statistics/lost.h"
 #include "statistics/passages.h"
 #include "statistics/runOrigin.h"
+#include "statistics/sourceReach.h"
 
 #include <cstdint>
 #include <functional>
@@ -36,7 +38,7 @@ namespace rockfall
 class HazardRaster;
 
 /// The first bytes of a file.
-constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '6' };
+constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '7' };
 /// Of each file that is read one part is in memory.
 constexpr std::size_t kPassagesOfPart = 4096;
 
@@ -51,6 +53,7 @@ struct PassageFile
   Releases releases;
   LostRocks lost;                   ///< Of all of the run, whatever came to the map.
   RockFrequencies frequencies;      ///< Empty: not known.
+  RockSources sources;              ///< Likewise.
   std::uint64_t passages = 0;       ///< How many there are.
   std::vector<std::uint64_t> parts; ///< Byte with which each begins, and the end.
 };
@@ -59,7 +62,7 @@ struct PassageFile
 /// into `fileName`: beside, and renamed when it is whole. Throws FileError.
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
   const std::string& fileName, const LostRocks& lost = {}, const RockFrequencies& frequencies = {},
-  const RunOrigin& run = {});
+  const RunOrigin& run = {}, const RockSources& sources = {});
 
 /// Reads all but the passages. Throws FileError that names the file if it is none, of another
 /// version, not of the length that it must have, or of numbers that no run has.
@@ -80,6 +83,8 @@ public:
   const Releases& releases() const { return releases_; }
   const LostRocks& lost() const { return lost_; }
   const RockFrequencies& frequencies() const { return frequencies_; }
+  /// Throws DataError if two files have different sources of a rock.
+  RockSources sources() const;
   /// On files whose runs differ from the first.
   const std::vector<std::string>& notes() const { return notes_; }
 

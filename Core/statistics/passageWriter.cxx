@@ -71,7 +71,7 @@ void putPassages(std::ostream& out, const std::vector<Passage>& passages)
 
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
   const std::string& fileName, const LostRocks& lost, const RockFrequencies& frequencies,
-  const RunOrigin& run)
+  const RunOrigin& run, const RockSources& sources)
 {
   gis::OutputFile file(fileName);
   std::ofstream out(file.temporary(), std::ios::binary);
@@ -107,6 +107,15 @@ void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& 
     put(out, rock.second);
     put(out, release.iterations);
     put(out, release.frequency);
+  }
+  put(out, std::uint64_t(sources.releases().size()));
+  for (const auto& [rock, release] : sources.releases())
+  {
+    for (const std::int64_t number :
+      { std::int64_t(rock.first), rock.second, release.source, release.iterations })
+    {
+      put(out, number);
+    }
   }
   const std::vector<Passage>& passages = raster.sorted();
   put(out, std::uint64_t(passages.size()));

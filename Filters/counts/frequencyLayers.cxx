@@ -55,24 +55,24 @@ std::vector<double> joulesOf(const FrequencyOptions& options)
   return joules;
 }
 
-} // namespace
-
-RockFrequencies frequenciesOf(vtkPolyData* trajectories)
+/// Calls use(number, block, value of the array) for each rock of each iteration; not at all without
+/// the array.
+template <typename Use>
+void forReleases(vtkPolyData* trajectories, const char* name, Use&& use)
 {
   vtkCellData* cells = trajectories->GetCellData();
-  vtkDataArray* frequency = cells->GetArray("Frequency");
+  vtkDataArray* array = cells->GetArray(name);
   vtkDataArray* rock = cells->GetArray("RockId");
   vtkDataArray* block = cells->GetArray("BlockId");
-  if (!frequency || !rock || !block)
+  if (!array || !rock || !block)
   {
-    return {};
+    return;
   }
-  if (frequency->GetNumberOfComponents() != 1)
+  if (array->GetNumberOfComponents() != 1)
   {
-    throw DataError("The cell array Frequency of the Input has " +
-      std::to_string(frequency->GetNumberOfComponents()) + " components, it must have 1");
+    throw DataError("The cell array " + std::string(name) + " of the Input has " +
+      std::to_string(array->GetNumberOfComponents()) + " components, it must have 1");
   }
-  RockFrequencies result;
   // A rock is released once, whatever it breaks into.
   vtkDataArray* piece = cells->GetArray("Piece");
   // Polydata's cells begin with its vertices.
@@ -81,10 +81,28 @@ RockFrequencies frequenciesOf(vtkPolyData* trajectories)
   {
     if (!piece || piece->GetTuple1(line) == 0.0)
     {
-      result.add(int(rock->GetTuple1(line)), std::int64_t(block->GetTuple1(line)),
-        frequency->GetTuple1(line));
+      use(int(rock->GetTuple1(line)), std::int64_t(block->GetTuple1(line)), array->GetTuple1(line));
     }
   }
+}
+
+} // namespace
+
+RockFrequencies frequenciesOf(vtkPolyData* trajectories)
+{
+  RockFrequencies result;
+  forReleases(trajectories, "Frequency",
+    [&](int rock, std::int64_t block, double frequency) { result.add(rock, block, frequency); });
+  return result;
+}
+
+RockSources sourcesOf(vtkPolyData* trajectories)
+{
+  RockSources result;
+  forReleases(trajectories, "SourceId",
+    [&](int rock, std::int64_t block, double source) {
+      result.add(rock, block, { std::int64_t(source), 1 });
+    });
   return result;
 }
 

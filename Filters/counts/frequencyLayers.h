@@ -1,9 +1,11 @@
 #pragma once
 
 /// @file
-/// Arrays of annual frequencies and intensity classes of a map of hazards.
+/// Arrays of annual frequencies and intensity classes of a map of hazards; frequencies and sources
+/// of rocks.
 
 #include "statistics/frequency.h"
+#include "statistics/sourceReach.h"
 
 #include "vtkSmartPointer.h"
 
@@ -32,6 +34,9 @@ void checkFrequencies(const FrequencyOptions& options);
 
 /// By the cell array Frequency of trajectories; empty without one. Throws DataError for a bad one.
 RockFrequencies frequenciesOf(vtkPolyData* trajectories);
+
+/// By the cell array SourceId of trajectories; empty without one. Throws DataError if a rock has two.
+RockSources sourcesOf(vtkPolyData* trajectories);
 
 /// The arrays of a map; none where frequencies are not known.
 class FrequencyLayers

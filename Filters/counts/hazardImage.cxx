@@ -236,10 +236,11 @@ public:
     return dropped;
   }
 
-  void set(const CellSummary& cell)
+  /// `reach`: the share that LeastReach is asked of.
+  void set(const CellSummary& cell, double reach)
   {
     const vtkIdType id = cell.cell;
-    isLeftOut_ = cell.reach < options_.leastReach;
+    isLeftOut_ = reach < options_.leastReach;
     if (isLeftOut_)
     {
       this->leaveOut(id);
@@ -287,8 +288,9 @@ public:
     if (leftOut_ > 0)
     {
       notes.push_back(std::to_string(leftOut_) +
-        " cells that rocks passed are left empty: their reach is below LeastReach, " +
-        numberText(options_.leastReach) + ", or all energy-line angles are below " + angle);
+        " cells that rocks passed are left empty: of no source comes LeastReach, " +
+        numberText(options_.leastReach) + ", of its rocks, or all energy-line angles are below " +
+        angle);
     }
     return notes;
   }
@@ -377,10 +379,10 @@ namespace
 {
 
 /// The map but for its heights and coordinate system. `corner`: the
-/// south-western one, in the world.
+/// south-western one, in the world. `sources`: asked for if LeastReach is.
 void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& releases, bool withTerrain,
   const LostRocks& lost, const HazardMapOptions& options, const RockFrequencies& frequencies,
-  std::vector<std::string> notes,
+  const std::function<RockSources()>& sources, std::vector<std::string> notes,
   const std::function<void(const std::function<void(const Passage&)>&)>& forEach,
   vtkImageData* image)
 {
@@ -394,7 +396,10 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
   FrequencyLayers frequencyLayers(
     options.frequency, released, frequencies,
     [&layers](std::uint32_t) { return layers.isLeftOut(); }, image);
-  const UseCell set = [&layers](const CellSummary& cell) { layers.set(cell); };
+  const RockSources known = options.leastReach > 0.0 ? sources() : RockSources();
+  SourceReach reach(known);
+  const UseCell set = [&](const CellSummary& cell)
+  { layers.set(cell, known.empty() ? cell.reach : reach.take()); };
   CellSummarizer summarizer(releases, set);
   forEach(
     [&](const Passage& passage)
@@ -403,6 +408,10 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
       {
         summarizer.add(passage);
         frequencyLayers.add(passage);
+        if (!known.empty())
+        {
+          reach.add(passage); // behind the summary of the cell before
+        }
       }
     });
   summarizer.finish();
@@ -502,7 +511,7 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
     grid, origin + Vec3(grid.west, grid.south, 0.0), raster.releases(), terrain.has_value(),
     lostOf(trajectories), options,
     options.frequency.annualFrequency > 0.0 ? RockFrequencies() : frequenciesOf(trajectories),
-    notes,
+    [&] { return sourcesOf(trajectories); }, notes,
     [&raster](const std::function<void(const Passage&)>& use)
     {
       for (const Passage& passage : raster.sorted())
@@ -535,7 +544,7 @@ void makeHazardImage(
   }
   fillImage(
     grid, Vec3(grid.west, grid.south, 0.0), files.releases(), true, files.lost(), options,
-    files.frequencies(), std::move(notes),
+    files.frequencies(), [&] { return files.sources(); }, std::move(notes),
     [&files](const std::function<void(const Passage&)>& use) { files.forEach(use); }, image);
   writeCoordinateSystem(files.crs(), files.origin(), image->GetFieldData());
 }
@@ -557,7 +566,8 @@ void writeHazardPassages(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
     showNote(note);
   }
   writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName,
-    lostOf(trajectories), frequenciesOf(trajectories), runOf(trajectories));
+    lostOf(trajectories), frequenciesOf(trajectories), runOf(trajectories),
+    sourcesOf(trajectories));
 }
 
 } // namespace rockfall::filters

@@ -50,7 +50,7 @@ struct HazardMapOptions
   bool rockWidth = true; ///< Rocks wider than a cell touch every cell under them.
   ChosenStatistics statistics = usualStatistics;
   FrequencyOptions frequency = {};
-  double leastReach = 0.0; ///< Cells with a lower reach probability are left empty.
+  double leastReach = 0.0; ///< Cells that no source reaches with such a share are left empty.
   double leastAngle = 0.0; ///< Passages with a smaller energy-line angle are dropped, degrees.
 };
 

@@ -64,7 +64,7 @@ public:
 
   ///@{
   /**
-   * Cells that a smaller share of the rocks reaches (0 to 1) are left empty, and rocks do not count
+   * Cells that a smaller share of the rocks of every source reaches (0 to 1) are left empty, and rocks do not count
    * in cells where their energy-line angle is smaller (0 to 90 degrees); the map says so. 0 by
    * default.
    */

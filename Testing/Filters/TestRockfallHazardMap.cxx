@@ -40,9 +40,9 @@ protected:
     this->Filter->Update();
     return this->Filter->GetOutput();
   }
-  double At(const char* array, double x, double y)
+  double At(const char* array, double x, double y) { return ValueAt(this->Map(), array, x, y); }
+  static double ValueAt(vtkImageData* map, const char* array, double x, double y)
   {
-    vtkImageData* map = this->Map();
     int ijk[3];
     double local[3];
     const double point[3] = { x, y, 0.0 };
@@ -277,6 +277,43 @@ TEST_F(TestRockfallHazardMap, EnergyLineAnglesAndWhatIsLeftEmpty)
   this->Filter->SetLeastReach(1.5);
   EXPECT_EQ(this->Map()->GetNumberOfCells(), 0);
   this->ExpectOneError({ "LeastReach is 1.5" });
+}
+
+/// Further rocks of another source do not make outliers of those that always come.
+TEST_F(TestRockfallHazardMap, LeastReachAsksEachSource)
+{
+  vtkNew<vtkIdTypeArray> source;
+  source->SetName("SourceId");
+  for (int k = 0; k < 12; ++k) // rock 0 is the one of source 1; the last of source 2 goes apart
+  {
+    this->Paths.AddLevel(k / 4, k % 4, { 1, k % 4 == 0 ? 3.0 : k == 11 ? 23.0 : 13.0, 50 }, 20, 10);
+    source->InsertNextValue(k % 4 == 0 ? 1 : 2);
+  }
+  this->Paths.Data->GetCellData()->AddArray(source);
+  this->Filter->SetCellSize(5.0);
+  this->Filter->SetLeastReach(0.5);
+  const auto check = [](vtkImageData* map)
+  {
+    EXPECT_EQ(ValueAt(map, "Rocks", 7, 3), 3.0); // a quarter of all
+    EXPECT_EQ(ValueAt(map, "Rocks", 7, 13), 8.0);
+    EXPECT_EQ(ValueAt(map, "Rocks", 7, 23), 0.0); // a ninth of its source
+  };
+  check(this->Map());
+  vtkNew<vtkDEMToCFESource> terrain;
+  terrain->Update();
+  this->Paths.Data->GetFieldData()->RemoveArray("TerrainCRS");
+  vtkNew<vtkHazardPassageWriter> writer;
+  writer->SetInputDataObject(0, this->Paths.Data);
+  writer->SetInputConnection(1, terrain->GetOutputPort());
+  writer->SetCellSize(5.0);
+  const std::string name = this->WriteFile("sources.passages", "");
+  writer->SetFileName(name.c_str());
+  writer->Write();
+  vtkNew<vtkHazardPassageReader> reader;
+  reader->AddFileName(name.c_str());
+  reader->SetLeastReach(0.5);
+  reader->Update();
+  check(reader->GetOutput());
 }
 
 /// A scenario that is shared out over files gives the map of the whole, frequencies and all.

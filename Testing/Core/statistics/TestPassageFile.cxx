@@ -362,7 +362,7 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   };
   const double inf = std::numeric_limits<double>::infinity();
   constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 88, count = 104, lost = 112,
-                        firstPassage = 188;
+                        firstPassage = 196;
   put(8, std::int32_t(-4));
   expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
   put(8, std::int32_t(2147483647));
@@ -448,4 +448,68 @@ TEST_F(TestPassageFile, FrequenciesAreThoseOfAllFiles)
   expectError({ names[0] }, "of 0 iterations");
   put(release, 0.125);
   expectError(names, "per year in one iteration and");
+}
+
+TEST_F(TestPassageFile, SourcesAreThoseOfAllFiles)
+{
+  // Ten rocks; those of even numbers are of source 4.
+  std::vector<std::string> names;
+  for (int part = 0; part < 3; ++part)
+  {
+    HazardRaster raster = rasterOf([&](int k) { return k % 3 == part; });
+    RockSources sources;
+    for (int k = part; k < 60; k += 3)
+    {
+      sources.add(k % 10, 0, { k % 2 == 0 ? 4 : -1, 1 });
+    }
+    names.push_back(fileName(std::to_string(part)));
+    writePassages(raster, origin, "", names.back(), {}, {}, {}, sources);
+  }
+  const RockSources sources = PassageFiles(names).sources();
+  ASSERT_EQ(sources.releases().size(), 10u);
+  for (const auto& [rock, release] : sources.releases())
+  {
+    EXPECT_EQ(release.iterations, 6);
+    EXPECT_EQ(release.source, rock.first % 2 == 0 ? 4 : -1);
+  }
+  // A rock of two sources, and damage.
+  HazardRaster raster = rasterOf([](int k) { return k == 0; });
+  RockSources others;
+  others.add(0, 0, { 5, 1 });
+  writePassages(raster, origin, "", fileName("other"), {}, {}, {}, others);
+  EXPECT_THROW(PassageFiles({ names[0], fileName("other") }).sources(), DataError);
+  std::string bytes = read(fileName("other"));
+  const std::size_t source = bytes.find(std::string("\5\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0", 16));
+  ASSERT_NE(source, std::string::npos);
+  bytes[source + 8] = 0;
+  std::ofstream(fileName("other"), std::ios::binary) << bytes;
+  expectError({ fileName("other") }, "the source of rock 0 released it in 0 iterations");
+}
+
+TEST(SourceReach, IsTheLargestOfASource)
+{
+  // Source 1 released a rock in each of four iterations, source 2 a hundred.
+  RockSources sources;
+  sources.add(0, 7, { 1, 4 });
+  for (int rock = 1; rock <= 100; ++rock)
+  {
+    sources.add(rock, 7, { 2, 4 });
+  }
+  SourceReach reach(sources);
+  const auto pass = [&](int iteration, int rock)
+  {
+    Passage passage;
+    passage.iteration = iteration;
+    passage.rock = rock;
+    passage.blockId = 7;
+    reach.add(passage);
+  };
+  pass(0, 0);
+  pass(2, 0);
+  pass(0, 5);
+  EXPECT_EQ(reach.take(), 0.5);
+  pass(3, 9);
+  EXPECT_EQ(reach.take(), 1.0 / 400.0); // of this cell alone
+  EXPECT_EQ(reach.take(), 0.0);
+  EXPECT_THROW(pass(0, 101), DataError);
 }

@@ -1,0 +1,71 @@
+#include "statistics/sourceReach.h"
+
+#include "base/errors.h"
+
+#include <algorithm>
+#include <string>
+
+namespace rockfall
+{
+
+void RockSources::add(int rock, std::int64_t blockId, const Release& release)
+{
+  Release& known = releases_[{ rock, blockId }];
+  if (known.iterations > 0 && known.source != release.source)
+  {
+    throw DataError("Rock " + std::to_string(rock) + " (block " + std::to_string(blockId) +
+      ") is of the source " + std::to_string(release.source) + " in one iteration and of " +
+      std::to_string(known.source) + " in another");
+  }
+  known.source = release.source;
+  known.iterations += release.iterations;
+}
+
+void RockSources::add(const RockSources& other)
+{
+  for (const auto& [rock, release] : other.releases_)
+  {
+    this->add(rock.first, rock.second, release);
+  }
+}
+
+SourceReach::SourceReach(const RockSources& sources)
+{
+  std::map<std::int64_t, std::size_t> numbers;
+  for (const auto& [rock, release] : sources.releases())
+  {
+    const std::size_t number = numbers.try_emplace(release.source, numbers.size()).first->second;
+    sources_.resize(numbers.size());
+    sources_[number].released += release.iterations;
+    sourceOf_.emplace(rock, number);
+  }
+}
+
+void SourceReach::add(const Passage& passage)
+{
+  const auto found = sourceOf_.find({ passage.rock, passage.blockId });
+  if (found == sourceOf_.end())
+  {
+    throw DataError("Rock " + std::to_string(passage.rock) + " (block " +
+      std::to_string(passage.blockId) + ") passes cells, but its source is not known");
+  }
+  if (sources_[found->second].came++ == 0)
+  {
+    touched_.push_back(found->second);
+  }
+}
+
+double SourceReach::take()
+{
+  double largest = 0.0;
+  for (const std::size_t number : touched_)
+  {
+    Source& source = sources_[number];
+    largest = std::max(largest, double(source.came) / double(source.released));
+    source.came = 0;
+  }
+  touched_.clear();
+  return largest;
+}
+
+} // namespace rockfall
