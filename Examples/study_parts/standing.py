@@ -14,12 +14,18 @@ from wholefile import write_npz
 TABLE = "structures.csv"
 HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT, CAME = range(7)  # the first five as Outcome of port 4
 MEL = (100.0, 250.0, 500.0, 1000.0, 1500.0, 2000.0, 3000.0, 4500.0)  # kJ, of the classes 0 to 7 (EAD 340059-00-0106)
-EVENT = ("Structure", "Event", "Iteration", "RockId", "Energy", "Height", "Braking", "Useful")
+EVENT = ("Structure", "Event", "Iteration", "RockId", "Piece", "Energy", "Height", "Braking", "Useful")
 
 
 def numbers(data, name):
     array = data.GetArray(name)
     return vtk_to_numpy(array) if array else np.empty(0)
+
+
+def bodies(data):
+    """Iteration, rock and piece of each; without the last array there are whole rocks only."""
+    iteration, rock, piece = (numbers(data, name) for name in ("Iteration", "RockId", "Piece"))
+    return iteration, rock, piece if len(piece) else np.zeros(len(rock))
 
 
 def of_slope(data):
@@ -72,7 +78,7 @@ class Standing:
                 self.collector.Points = [value for x, y in part for value in (x, y, 0.0)]
                 UpdatePipeline(proxy=self.collector)
                 passed = output(self.collector).GetPointData()
-                columns = [numbers(passed, name) for name in ("Iteration", "RockId", "KineticEnergy", "TopHeight")]
+                columns = [*bodies(passed), *(numbers(passed, name) for name in ("KineticEnergy", "TopHeight"))]
                 rows += [(k, CAME, *row, 0.0, math.nan) for row in zip(*columns)]
         table = dict(zip(EVENT, np.array(rows, float).reshape(-1, len(EVENT)).T))
         from_first_rank(lambda: write_npz(stem + "-structures.npz", table))
@@ -80,25 +86,22 @@ class Standing:
     def met(self, impacts, summaries, structures):
         """Rows of nets and stems that were hit, and of impacts on embankments."""
         met = structures.GetPointData()
-        names = ("StructureId", "Outcome", "Iteration", "RockId", "KineticEnergy", "HeightOverGround", "BrakingDistance",
-                 "UsefulHeight")
-        for feature, outcome, *row in zip(*(numbers(met, name) for name in names)):
+        names = ("KineticEnergy", "HeightOverGround", "BrakingDistance", "UsefulHeight")
+        for feature, outcome, *row in zip(numbers(met, "StructureId"), numbers(met, "Outcome"), *bodies(met),
+                                          *(numbers(met, name) for name in names)):
             thing = ("net", int(feature)) if outcome <= RECORDED else ("stems", 0)
             yield self.numbers[thing], int(outcome), *row
         if not self.of_cfe:
             return
         table = summaries.GetRowData()
-        keys = [numbers(table, name) for name in ("Iteration", "RockId", "Piece", "Mass")]
-        if not len(keys[2]):
-            keys[2] = np.zeros(len(keys[0]))
-        mass = {tuple(key): m for *key, m in zip(*keys)}
+        mass = {tuple(key): m for *key, m in zip(*bodies(table), numbers(table, "Mass"))}
         hits = impacts.GetPointData()
         cfes = numbers(hits, "CFEId")
-        iteration, rock, piece, speed = (numbers(hits, name) for name in ("Iteration", "RockId", "Piece", "VelocityBefore"))
+        (iteration, rock, piece), speed = bodies(hits), numbers(hits, "VelocityBefore")
         for k in np.flatnonzero(np.isin(cfes, list(self.of_cfe))):
-            key = (iteration[k], rock[k], piece[k] if len(piece) else 0.0)
+            key = (iteration[k], rock[k], piece[k])
             energy = 0.5 * mass[key] * float(speed[k] @ speed[k])
-            yield self.of_cfe[int(cfes[k])], HIT, iteration[k], rock[k], energy, math.nan, 0.0, math.nan
+            yield self.of_cfe[int(cfes[k])], HIT, *key, energy, math.nan, 0.0, math.nan
 
 
 def frequency_of(study, stems, wanted):
@@ -128,16 +131,22 @@ def largest(values):
 
 def summary(thing, events, often):
     """A row of structures.csv."""
-    keys = np.array(list(zip(events["Iteration"].astype(int), events["RockId"].astype(int))), int).reshape(-1, 2)
+    keys = np.stack([events[name].astype(int) for name in ("Iteration", "RockId", "Piece")], axis=1)
+    hits = (HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT)
 
-    def rocks(*kinds):
+    def met(*kinds):
         return {tuple(key) for key in keys[np.isin(events["Event"], kinds)].tolist()}
 
-    hit, broke, stem = rocks(HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT), rocks(BROKE), thing["kind"] == "stems"
+    def rocks(*kinds):
+        return {key[:2] for key in met(*kinds)}
+
+    hit, broke, stem = rocks(*hits), rocks(BROKE), thing["kind"] == "stems"
     came = rocks(CAME) | hit
-    # An embankment holds what hits it and does not come over its axis; stems that hold are slope, which nothing counts.
-    over = rocks(CAME) - (set() if thing["kind"] == "embankment" else hit)
-    held = hit - over if thing["kind"] == "embankment" else rocks(HELD) - broke
+    # An embankment holds what hits it and does not come over its axis; a net may miss a piece of a rock and hold another.
+    # Stems that hold are slope, which nothing counts.
+    dam = thing["kind"] == "embankment"
+    over = rocks(CAME) if dam else {key[:2] for key in met(CAME) - met(*hits)}
+    held = (hit if dam else rocks(HELD) - broke) - over
     energy = largest(events["Energy"]) / 1000.0
     net = thing["kind"] == "net"
     return {

@@ -6,6 +6,7 @@ import csv
 import glob
 import io
 import json
+import math
 import os
 import random
 import shutil
@@ -18,12 +19,14 @@ import xml.etree.ElementTree as ElementTree
 from helpers import (
     delete_sources, files_of, incline, outside_mpi, run_script, write_grid, write_text)
 
+import numpy as np
 from paraview.simple import (
     DEMtoCFEMesh, GetSources, Delete, OutputPort, RockBlocks, RockfallHazardMap, RockfallSimulation,
     SaveData, TrajectoryCollector, UpdatePipeline)
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "study.py")
 sys.path[:0] = [os.path.join(os.path.dirname(SCRIPT), "study_parts")]
+import standing
 from identity import FILES
 
 MPIEXEC = shutil.which("mpiexec")
@@ -203,6 +206,17 @@ assert against and int(stood["embankment"]["Hits"]) == len(against), (stood, aga
 assert int(stood["stems"]["Broke"]) == sum(met.GetArray("Outcome").GetValue(k) == 3 for k in range(met.GetNumberOfTuples())) > 0
 for source in list(GetSources().values()):
     Delete(source)
+
+
+def row_of(thing, *events):
+    table = np.array([(0, kind, 0, rock, piece, 1e3, 1.0, 0.0, math.nan) for kind, rock, piece in events]).reshape(-1, 9)
+    return standing.summary(thing, dict(zip(standing.EVENT, table.T)), None)
+
+
+# Of a rock that broke one piece is held and one flies over the net: the net has not held it.
+one = row_of({"kind": "net", "id": 1, "name": "", "height": 3.0, "capacity": 100.0, "parts": []},
+             (standing.CAME, 4, 1), (standing.CAME, 4, 2), (standing.HELD, 4, 1), (standing.HELD, 5, 0))
+assert [one[name] for name in ("Rocks", "Hits", "Held", "Broke", "Over", "HeldAll")] == [2, 2, 1, 0, 1, 0], one
 
 # Another study, by a number or by the content of a file.
 write_study("other.json", simulation={"EndTime": 7.0, "TrajectoryOutput": "Thinned"})
