@@ -13,6 +13,7 @@ from wholefile import write_npz
 
 TABLE = "structures.csv"
 HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT, CAME = range(7)  # the first five as Outcome of port 4
+RESTED, CAUGHT, BROKEN = 0, 3, 5  # as FateCode of port 3
 MEL = (100.0, 250.0, 500.0, 1000.0, 1500.0, 2000.0, 3000.0, 4500.0)  # kJ, of the classes 0 to 7 (EAD 340059-00-0106)
 EVENT = ("Structure", "Event", "Iteration", "RockId", "Piece", "Energy", "Height", "Braking", "Useful")
 
@@ -124,14 +125,53 @@ def frequency_of(study, stems, wanted):
     return {key: value / (count if together else len(iterations)) for key, value in rocks.items()}
 
 
+def side_of(line, place):
+    """How far a place is from a line, and on which side of it: 1 left, -1 right, beyond an end as of the last segment."""
+    points = np.array(line)
+    points = points[np.append(True, np.diff(points, axis=0).any(axis=1))]
+    along, beside = np.diff(points, axis=0), np.array(place) - points[:-1]
+    length = np.hypot(*along.T)
+    share = np.clip((beside * along).sum(axis=1) / length ** 2, 0.0, 1.0)
+    away = np.hypot(*(beside - share[:, None] * along).T)
+    left = (along[:, 0] * beside[:, 1] - along[:, 1] * beside[:, 0]) / length
+    nearest = np.flatnonzero(away <= away.min() + 1e-6)  # two at a corner
+    return away.min(), np.sign(left[nearest[np.argmax(np.abs(left[nearest]))]])
+
+
+def lies_before(parts, start, stop):
+    """Whether a rock ended on that side of an embankment from which it came."""
+    part = min(parts, key=lambda line: side_of(line, stop)[0])
+    return side_of(part, start)[1] * side_of(part, stop)[1] > 0.0
+
+
+def ends_of(stems, wanted):
+    """Of rocks by iteration and number their release and, of all that became of them, fate and place."""
+    ends = {key: [None, []] for key in wanted}
+    for stem in stems if wanted else ():
+        with np.load(stem + ".npz") as table:
+            columns = [table[name].tolist() for name in ("Iteration", "RockId", "FateCode", "StartX", "StartY", "StopX", "StopY")]
+            piece = table["Piece"].tolist() if "Piece" in table else len(columns[0]) * [0]
+        for iteration, rock, fate, x, y, stop_x, stop_y, number in zip(*columns, piece):
+            if (iteration, rock) in ends:
+                end = ends[iteration, rock]
+                end[0] = (x, y) if number == 0 else end[0]
+                if fate != BROKEN:
+                    end[1].append((fate, (stop_x, stop_y)))
+    return ends
+
+
 def largest(values):
     values = values[np.isfinite(values)]
     return float(values.max()) if len(values) else math.nan
 
 
-def summary(thing, events, often):
+def keys_of(events, *names):
+    return np.stack([events[name].astype(int) for name in names], axis=1)
+
+
+def summary(thing, events, often, ends):
     """A row of structures.csv."""
-    keys = np.stack([events[name].astype(int) for name in ("Iteration", "RockId", "Piece")], axis=1)
+    keys = keys_of(events, "Iteration", "RockId", "Piece")
     hits = (HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT)
 
     def met(*kinds):
@@ -142,11 +182,15 @@ def summary(thing, events, often):
 
     hit, broke, stem = rocks(*hits), rocks(BROKE), thing["kind"] == "stems"
     came = rocks(CAME) | hit
-    # An embankment holds what hits it and does not come over its axis; a net may miss a piece of a rock and hold another.
-    # Stems that hold are slope, which nothing counts.
-    dam = thing["kind"] == "embankment"
-    over = rocks(CAME) if dam else {key[:2] for key in met(CAME) - met(*hits)}
-    held = (hit if dam else rocks(HELD) - broke) - over
+    # An embankment holds what hits it, does not come over its axis and ends before it: all else came over or beside it.
+    # A net may miss a piece of a rock and hold another. Stems that hold are slope, which nothing counts.
+    if thing["kind"] == "embankment":
+        held = {key for key in hit - rocks(CAME) if all(
+            fate in (RESTED, CAUGHT) and lies_before(thing["parts"], ends[key][0], stop) for fate, stop in ends[key][1])}
+        over = came - held
+    else:
+        over = {key[:2] for key in met(CAME) - met(*hits)}
+        held = rocks(HELD) - broke - over
     energy = largest(events["Energy"]) / 1000.0
     net = thing["kind"] == "net"
     return {
@@ -171,6 +215,8 @@ def combine(study, folder, stems, things):
             chunks.append({name: chunk[name] for name in EVENT})
     events = {name: np.concatenate([chunk[name] for chunk in chunks]) for name in EVENT}
     often = frequency_of(study, stems, set(zip(events["Iteration"].astype(int).tolist(), events["RockId"].astype(int).tolist())))
-    rows = [summary(one, {name: values[events["Structure"] == k] for name, values in events.items()}, often)
+    of_dams = np.isin(events["Structure"], [k for k, one in enumerate(things) if one["kind"] == "embankment"])
+    ends = ends_of(stems, set(map(tuple, keys_of(events, "Iteration", "RockId")[of_dams].tolist())))
+    rows = [summary(one, {name: values[events["Structure"] == k] for name, values in events.items()}, often, ends)
             for k, one in enumerate(things)]
     write_table(os.path.join(folder, TABLE), [{name: np.array([row[name] for row in rows]) for name in rows[0]}])

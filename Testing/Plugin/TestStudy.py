@@ -208,15 +208,23 @@ for source in list(GetSources().values()):
     Delete(source)
 
 
-def row_of(thing, *events):
+def row_of(thing, *events, ends=None):
     table = np.array([(0, kind, 0, rock, piece, 1e3, 1.0, 0.0, math.nan) for kind, rock, piece in events]).reshape(-1, 9)
-    return standing.summary(thing, dict(zip(standing.EVENT, table.T)), None)
+    return standing.summary(thing, dict(zip(standing.EVENT, table.T)), None, ends)
 
 
 # Of a rock that broke one piece is held and one flies over the net: the net has not held it.
 one = row_of({"kind": "net", "id": 1, "name": "", "height": 3.0, "capacity": 100.0, "parts": []},
              (standing.CAME, 4, 1), (standing.CAME, 4, 2), (standing.HELD, 4, 1), (standing.HELD, 5, 0))
 assert [one[name] for name in ("Rocks", "Hits", "Held", "Broke", "Over", "HeldAll")] == [2, 2, 1, 0, 1, 0], one
+# A dam with a bend, rocks from x = 0: one rests before it, one went round its end, one fell over the edge of the DEM,
+# one is still moving, of one a piece went on, one came over the axis and back, one broke into pieces that lie before it.
+dam = {"kind": "embankment", "id": 1, "name": "", "height": 3.0, "capacity": None, "parts": [[(50, 0), (50, 10), (45, 20)]]}
+ends = {(0, rock): [(0.0, 5.0), list(bodies)] for rock, bodies in enumerate((
+    [(0, (48.0, 5.0))], [(0, (70.0, 25.0))], [(1, (20.0, 40.0))], [(2, (40.0, 5.0))], [(0, (40.0, 5.0)), (0, (60.0, -3.0))],
+    [(0, (47.0, 12.0))], [(0, (30.0, 12.0)), (3, (40.0, 25.0))]))}
+one = row_of(dam, *((standing.HIT, rock, 0) for rock in range(7)), (standing.CAME, 5, 0), ends=ends)
+assert [one[name] for name in ("Rocks", "Hits", "Held", "Over")] == [7, 7, 2, 5], one
 
 # Another study, by a number or by the content of a file.
 write_study("other.json", simulation={"EndTime": 7.0, "TrajectoryOutput": "Thinned"})
