@@ -77,11 +77,14 @@ def best_place(study, name, rows):
 
 
 def quantile(values, q=0.95):
-    """With its interval by order statistics, or NaN where there are too few values."""
+    """With its interval by order statistics, or NaN where there are too few values, which may be infinite."""
     values = np.sort(values)
     ranks = quantile_ranks(len(values), q, CONFIDENCE) if len(values) else None
     low, high = (values[r - 1] for r in ranks) if ranks else (np.nan, np.nan)
-    return (np.quantile(values, q) if len(values) else np.nan), low, high
+    if not len(values):
+        return np.nan, low, high
+    beside = values[int(np.ceil((len(values) - 1) * q))]
+    return (np.quantile(np.minimum(values, beside), q) if np.isfinite(beside) else beside), low, high
 
 
 def share(count, total):
@@ -111,7 +114,8 @@ def settling(study, names):
     ends = np.unique(np.linspace(1, study.iterations, POINTS).round().astype(int))
     order = np.unique(iteration)  # a study's iterations are numbered from 0
     totals = [int((iteration <= order[end - 1]).sum()) for end in ends]
-    curves = [("", "run-out, 95 %", "m", [quantile(study.rocks["RunOut"][iteration <= order[end - 1]]) for end in ends])]
+    ways = np.where(study.rocks["Endless"], np.inf, study.rocks["RunOut"])
+    curves = [("", "run-out, 95 %", "m", [quantile(ways[iteration <= order[end - 1]]) for end in ends])]
     for name in names:
         when, energy = first_passings(study, name)
         curves.append((name, "share that passes", "%", [
@@ -135,7 +139,8 @@ def curves_of(totals, curves):
     figure = new(PAGE, 46.0 * rows + 4.0)
     for k, (name, what, unit, values) in enumerate(curves):
         axes = place(figure, 16.0 + 88.0 * (k % 2), 46.0 * (rows - 1 - k // 2) + 10.0, 68.0, 32.0)
-        middle, low, high = np.array(values).T
+        values = np.array(values)
+        middle, low, high = np.where(np.isfinite(values), values, np.nan).T
         axes.fill_between(totals, low, high, color="#b9c9df", lw=0.0)
         axes.plot(totals, middle, color="#1b4f91", lw=1.2, marker=".", ms=3)
         axes.set_title(f"{short(name)}: {what}, {unit}" if name else f"{what}, {unit}", loc="left", fontsize=7)
@@ -145,4 +150,4 @@ def curves_of(totals, curves):
         if k >= len(curves) - 2:
             axes.set_xlabel("rocks")
     return picture(figure, "Value after so many rocks, and its 95 % interval: shares by Clopper & Pearson, quantiles by order "
-                   "statistics. Where no band is, too few rocks came.", "Convergence")
+                   "statistics. Where no band is, too few rocks came, or too many left the DEM, still moved or were lost in nodata.", "Convergence")

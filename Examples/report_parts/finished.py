@@ -13,6 +13,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import schema
 import standing
+from enough import ways_of
 from combine import RESULTS
 from identity import content, place
 from schema import Bad, shown
@@ -169,13 +170,9 @@ class Raster:
 
 
 def released(bodies):
-    """The rocks as they are released; of one that broke RunOut is that of its farthest piece."""
-    if "Piece" not in bodies:
-        return bodies
-    first = np.flatnonzero(bodies["Piece"] == 0)
-    of = np.repeat(first, np.diff([*first, len(bodies)]))
-    ways = np.hypot(bodies["StopX"] - bodies["StartX"][of], bodies["StopY"] - bodies["StartY"][of])
-    return bodies.rows(first, RunOut=np.maximum.reduceat(ways, first))
+    """The rocks as they are released; of one that broke RunOut is that of its farthest piece. Endless: 1 if it is not known."""
+    first, ways, endless = ways_of(bodies)
+    return bodies.rows(first, RunOut=ways, Endless=endless)
 
 
 class Study:
@@ -200,10 +197,10 @@ class Study:
         self.slope = Slope(self.properties("terrain"))
         # A row for each body: rocks as they are released, each with its pieces behind it where it broke.
         self.bodies = Table(self.path("summary.csv"), (
-            "Iteration", "BlockId", "SourceId", "Shape", "Fate", "StartX", "StartY", "RunOut", "Mass", "Volume",
+            "Iteration", "BlockId", "SourceId", "Shape", "Fate", "FateCode", "StartX", "StartY", "RunOut", "Mass", "Volume",
             "MaxSpeed", "ContactSteps", "UnsettledSteps", "EnergyReleased", "EnergyNumerical"),
             ("Frequency", "SourceName", "Piece", "StopX", "StopY"))
-        self.bodies.must_be_numbers("Iteration", "BlockId", "SourceId", "StartX", "StartY", "RunOut", "Mass", "Volume")
+        self.bodies.must_be_numbers("Iteration", "BlockId", "SourceId", "FateCode", "StartX", "StartY", "RunOut", "Mass", "Volume")
         if not len(self.bodies):
             raise Bad(f"{self.path('summary.csv')}: there are no rocks")
         self.rocks = released(self.bodies)

@@ -10,7 +10,8 @@ AT_LINES = ("Share", "KineticEnergy95")  # as lines.csv has them
 REACH = "RunOut95"  # of RunOut in summary.csv
 QUANTITIES = (*AT_LINES, REACH)
 KNOWN = ("quantity", "within", "confidence", "line")
-LOST = (2, 4)  # FateCode: moving at EndTime, in nodata. How far they go is not known
+LOST = (2, 4)  # FateCode: moving at EndTime, in nodata. They may come to a line yet
+ENDLESS = (1, *LOST)  # those that left the DEM, too: how far they go is not known
 
 
 def check(path, study):
@@ -105,13 +106,26 @@ def quantile_interval(values, confidence):
     return tuple(ends) if ends and math.isfinite(ends[1]) else (None, None)
 
 
+def ways_of(table):
+    """Of a table of bodies: rows of the rocks as released; how far each goes, of one that broke its farthest piece; and
+    whether it, or a piece of it, goes on no one knows how far."""
+    rows, breaking = len(table["Iteration"]), "Piece" in table
+    first = np.flatnonzero(table["Piece"] == 0) if breaking else np.arange(rows)
+    ways = table["RunOut"]
+    if breaking:  # the pieces of each stand behind it
+        of = np.repeat(first, np.diff(np.append(first, rows)))
+        ways = np.maximum.reduceat(np.hypot(*(table["Stop" + axis] - table["Start" + axis][of] for axis in "XY")), first)
+    endless = np.isin(table["FateCode"], ENDLESS)
+    return first, ways, np.logical_or.reduceat(endless, first)
+
+
 class Enough:
     """Of a study, chunk after chunk. `lines`: their names, of which the reach needs none."""
 
     def __init__(self, until, lines):
         self.until = until
         self.total = 0
-        self.ways = []  # RunOut of each rock, m; without an end if it was lost
+        self.ways = []  # RunOut of each rock, m; without an end if it is not known
         self.lost = {}  # by line: rocks that were lost before it
         if until["quantity"] == REACH:
             return
@@ -122,18 +136,13 @@ class Enough:
 
     def add(self, stem):
         with np.load(stem + ".npz") as chunk:
-            # Where rocks break, the pieces of each stand behind it: the farthest counts.
-            rows, breaking = len(chunk["Iteration"]), "Piece" in chunk.files
-            first = np.flatnonzero(chunk["Piece"] == 0) if breaking else np.arange(rows)
+            first, ways, endless = ways_of(chunk)
             self.total += len(first)
+            if self.until["quantity"] == REACH:
+                self.ways.extend(np.where(endless, np.inf, ways))
+                return
             lost = np.isin(chunk["FateCode"], LOST)
             rocks_lost = set(zip(chunk["Iteration"][lost], chunk["BlockId"][lost]))
-            if self.until["quantity"] == REACH:
-                rock = np.searchsorted(first, np.arange(rows), side="right") - 1
-                ways = np.hypot(*(chunk["Stop" + axis] - chunk["Start" + axis][first][rock] for axis in "XY"))
-                ways = np.where(lost, np.inf, ways if breaking else chunk["RunOut"])
-                self.ways.extend(np.maximum.reduceat(ways, first) if breaking else ways)
-                return
         points = crossings_of(stem)
         data = points.GetPointData()
         names = data.GetAbstractArray("LineName")

@@ -195,6 +195,11 @@ assert "6 rocks, 3 releases in 2 iterations" in text and "from 20 kJ/m³ of norm
 few = own.bodies.rows(np.arange(4), Piece=np.array([0.0, 1.0, 2.0, 0.0]), StartX=np.array([0.0, 5.0, 5.0, 0.0]),
                       StopX=np.array([5.0, 30.0, 9.0, 7.0]), StartY=np.zeros(4), StopY=np.zeros(4))
 assert list(finished.released(few)["RunOut"]) == [30.0, 7.0]
+# Of a rock that left the DEM, or a piece of which did, nobody knows how far it goes; a 95 % value beyond is none.
+few = few.rows(np.arange(4), FateCode=np.array([5.0, 0.0, 1.0, 0.0]))
+assert list(finished.released(few)["Endless"]) == [True, False]
+assert charts.quantile(np.arange(101.0))[0] == 95.0 and charts.quantile(np.append(np.arange(96.0), 5 * [np.inf]))[0] == 95.0
+assert charts.quantile(np.append(np.arange(95.0), 6 * [np.inf]))[0] == np.inf
 
 # A variant beside it: the same lines, and in what it differs.
 finish("variant", {**study, "terrain": {name: value for name, value in study["terrain"].items() if name != "BarrierFile"}})

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 
+import numpy as np
 from helpers import delete_sources, files_of, incline, messages_of, outside_mpi, rows_of, run_script, write_grid, write_text
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
@@ -107,14 +108,24 @@ notes = [["2 of 9 rocks fell", "None of 9 rocks moved: x"], [], ["1 of 9 rocks f
 assert combine.notes_of_all(notes, 27) == ["3 of 27 rocks fell"], combine.notes_of_all(notes, 27)
 assert combine.notes_of_all([["None of 9 rocks moved: x"]] * 2, 18) == ["None of 18 rocks moved: x"]
 
+# So are those that left the DEM: of a hundred that go 1 to 100 m ten go farther.
+columns = {name: np.zeros(100) for name in ("BlockId", "StartX", "StartY", "StopX", "StopY")}
+for left in (10, 0):
+    np.savez("left.npz", **columns, Iteration=np.arange(100), RunOut=np.arange(1.0, 101.0), FateCode=np.arange(100) >= 100 - left)
+    reach, known = enough.Enough({"quantity": "RunOut95", "within": 0.5}, []), left == 0
+    reach.add("left")
+    assert [one["known"] for one in reach.state()] == [known], reach.state()
+
 # How far rocks go needs no line: order statistics of RunOut.
 calm = {name: value for name, value in study.items() if name != "lines"}
-study = {**calm, "iterations": 40, "chunk": 8}
+write_grid("enough-foot.asc", [[max(z - 75.0, 0.0) for z in row] for row in incline()])  # rocks end on it
+study = {**calm, "terrain": {**calm["terrain"], "FileName": "enough-foot.asc"}, "rocks": {**calm["rocks"], "Center": [700025, 4000060, 72]},
+         "iterations": 40, "chunk": 8}
 code, said = run("enough-reach", until={"quantity": "RunOut95", "within": 0.3})
 assert code == 0 and "Enough rocks, " in said and "RunOut95: " in said and " m" in said, said
 known = json.loads(files_of("enough-reach")["manifest.json"])["until"]["lines"]
 rows = rows_of("enough-reach/summary.csv")  # whoever was lost may have gone any way
-ways = sorted(math.inf if int(row["FateCode"]) in enough.LOST else float(row["RunOut"]) for row in rows)
+ways = sorted(math.inf if int(row["FateCode"]) in enough.ENDLESS else float(row["RunOut"]) for row in rows)
 assert len(known) == 1 and known[0]["rocks"] == len(ways) >= 72, known
 low, high = (ways[k - 1] for k in enough.quantile_ranks(len(ways), 0.95, 0.95))
 assert math.isclose(known[0]["from"], low) and math.isclose(known[0]["to"], high), (known, low, high)
