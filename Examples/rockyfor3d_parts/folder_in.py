@@ -101,8 +101,9 @@ def ground(grids, folder):
     if (heights[0] > heights[1]).any() or (heights[1] > heights[2]).any():
         raise Bad(f"{grids['rg70'].path}: rg70 must not be above rg20, nor rg20 above rg10, in any cell")
     known = ~np.isnan(soil)
-    for step in (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1000.0):
-        keys = np.stack([soil[known], *(np.ceil(h[known] / step - 1e-6) * step for h in heights)], axis=1)
+    for step in (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, math.inf):
+        up = lambda h: np.ceil(h / step - 1e-6) * step if math.isfinite(step) else np.where(h > 0.0, h.max(), 0.0)
+        keys = np.stack([soil[known], *(up(h[known]) for h in heights)], axis=1)
         keys = keys.round(6) + 0.0  # no -0
         classes, number = np.unique(keys, axis=0, return_inverse=True)
         if len(classes) <= MOST_CLASSES:
@@ -190,9 +191,16 @@ def nets(grids, path):
             if off > MOST_OFF_NET:
                 raise Bad(f"{grids['net_number'].path}: the cells of net {one:.0f} that touch each other do not lie along one line, as one is "
                           f"{off:.1f} cells off it: give its arms numbers of their own")
+            for name, values, unit in (("net_height", height, "m"), ("net_energy", energy, "kJ")):
+                other = np.flatnonzero(~(values[cells] == values[cells][0]))  # nodata too
+                if len(other):
+                    row, column = (index[other[0]] + 1 for index in cells)
+                    here, there = (f"{v:g} {unit}" if v == v else "nodata" for v in (values[row - 1, column - 1], values[cells][0]))
+                    raise Bad(f"{grids[name].path}: row {row}, column {column} of net {one:.0f} is {here}, another cell of it {there}: "
+                              "parts that differ need numbers of their own")
             made += 1
             rows.append([f"LINESTRING({','.join(f'{a:.3f} {b:.3f}' for a, b in line)})", f"net {one:.0f}" + (f", part {made}" if made > 1 else ""),
-                         f"{np.nanmean(height[cells]):g}", f"{np.nanmean(energy[cells]):g}"])
+                         f"{height[cells][0]:g}", f"{energy[cells][0]:g}"])
             if not float(rows[-1][2]) > 0.0:
                 raise Bad(f"{grids['net_height'].path}: net {one:.0f} has the height {rows[-1][2]} m, it must be above 0")
     if rows:
@@ -237,7 +245,7 @@ def make(source, target, iterations, per, seed):
         "soiltype is taken by presets of this program, which have coefficients of their own (assumed): "
         + "; ".join(f"{k} {name}: {preset}" for k, (name, preset) in enumerate(SOILS)) + ".",
         f"rg70, rg20, rg10 are the obstacles of {classes} classes of ground, of {ROUGHNESS_LENGTH:g} m length, in place of the "
-        f"presets' roughness; heights were rounded up to {step:g} m. Whether that is Rockyfor3D's law is from memory.",
+        f"presets' roughness; heights were rounded up to {f'{step:g} m' if math.isfinite(step) else 'the largest of all cells'}. Whether that is Rockyfor3D's law is from memory.",
         "What Rockyfor3D varies by itself, as the volume of rocks or its heights of fall, is not in its rasters: set it in "
         "study.json."]
     if "nrtrees" in grids:
@@ -253,7 +261,7 @@ def make(source, target, iterations, per, seed):
         made, lost = nets(grids, into("nets.csv"))
         if made:
             terrain["BarrierFile"] = "nets.csv"
-        notes.append(f"{made} nets: lines through the cells of a net_number that touch each other, with the mean of net_energy (kJ) and net_height (m). "
+        notes.append(f"{made} nets: lines through the cells of a net_number that touch each other, with their net_energy (kJ) and net_height (m). "
                      "The names of these rasters and their units are from memory.")
         if lost:
             notes.append(f"Left out, as cells by themselves: net {', '.join(map(str, lost))}.")

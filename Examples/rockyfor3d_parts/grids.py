@@ -1,5 +1,7 @@
 """Rasters of Rockyfor3D: ESRI ASCII, north row first, all of one grid."""
+import math
 import os
+import re
 
 import numpy as np
 from osgeo import gdal, osr
@@ -7,6 +9,9 @@ from osgeo import gdal, osr
 gdal.UseExceptions()
 osr.UseExceptions()
 NODATA = -9999
+HEAD = {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter", "cellsize", "dx", "dy", "nodata_value"}
+NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?")  # a comma is a decimal mark, as for the plugin
+PLAIN = re.compile(r"[-+.\deE\s]*")  # a line that numpy may try first
 
 
 class Bad(Exception):
@@ -21,18 +26,29 @@ class Grid:
 
     @classmethod
     def read(cls, path):
+        """By its text: GDAL takes words for 0, and one corner for the kind of both."""
         try:
-            data = gdal.OpenEx(path, gdal.OF_RASTER, allowed_drivers=["AAIGrid"])
-            band = data.GetRasterBand(1)
-            values = band.ReadAsArray().astype(float)
+            crs = gdal.OpenEx(path, gdal.OF_RASTER, allowed_drivers=["AAIGrid"]).GetProjection()
         except (RuntimeError, AttributeError):
-            raise Bad(f"{path} is not a whole raster in ESRI ASCII") from None
-        west, cell, _, north, _, high = data.GetGeoTransform()
-        if abs(cell + high) > 1e-9 * cell:
-            raise Bad(f"{path}: cells are {cell:g} by {-high:g} m, they must be square")
-        nodata = band.GetNoDataValue()
-        values[values == (NODATA if nodata is None else nodata)] = np.nan
-        return cls(path, values, west, north, cell, data.GetProjection())
+            raise Bad(f"{path} is not a raster in ESRI ASCII") from None
+        with open(path, encoding="utf-8-sig", errors="replace") as file:
+            head, line = {}, file.readline()
+            while line and (not line.strip() or line.split()[0].lower() in HEAD):
+                name, *value = line.split() or [""]
+                if name and len(value) != 1:
+                    raise Bad(f"{path}: {name} is {' '.join(value) or 'empty'}, it must be one number")
+                head[name.lower()] = "".join(value)
+                line = file.readline()
+            columns, rows = (int(number_of(path, head, name, 1)) for name in ("ncols", "nrows"))
+            cell, high = (number_of(path, head, "cellsize" if "cellsize" in head else name, 1e-9) for name in ("dx", "dy"))
+            if abs(cell - high) > 1e-9 * cell:
+                raise Bad(f"{path}: cells are {cell:g} by {high:g} m, they must be square")
+            west, south = (number_of(path, head, axis + "corner") if axis + "corner" in head else
+                           number_of(path, head, axis + "center") - 0.5 * cell for axis in ("xll", "yll"))
+            values = values_of(path, line, file, columns, head.get("nodata_value", str(NODATA)))
+        if len(values) != columns * rows:
+            raise Bad(f"{path} has {len(values)} numbers, ncols {columns} and nrows {rows} make {columns * rows}")
+        return cls(path, values.reshape(rows, columns), west, south + rows * cell, cell, crs)
 
     def must_fit(self, other):
         """Another raster of the same grid."""
@@ -52,6 +68,41 @@ class Grid:
 
     def centres(self, rows, columns):
         return self.west + (columns + 0.5) * self.cell, self.north - (rows + 0.5) * self.cell
+
+
+def number_of(path, head, name, least=-math.inf):
+    """Of the head of a raster."""
+    text = head.get(name, "nothing")
+    if not NUMBER.fullmatch(text) or not least <= float(text.replace(",", ".")) < math.inf:
+        raise Bad(f"{path}: {name} is {text}, it must be a number{f' of {least:g} or more' if least >= 1 else ''}")
+    return float(text.replace(",", "."))
+
+
+def values_of(path, line, file, columns, nodata):
+    """The numbers of a line and of all behind it, NaN for nodata, which may be a word."""
+    parts, count = [np.empty(0)], 0
+    while line:
+        words = line.split()
+        try:
+            if not PLAIN.fullmatch(line):
+                raise ValueError
+            parts.append(np.array(words, float))
+        except ValueError:
+            wrong = next((k for k, word in enumerate(words) if word != nodata and not NUMBER.fullmatch(word)), None)
+            if wrong is not None:
+                raise Bad(f"{path}: row {(count + wrong) // columns + 1}, column {(count + wrong) % columns + 1} is {words[wrong][:40]}, "
+                          "it must be a number") from None
+            parts.append(np.array([float(word.replace(",", ".")) if NUMBER.fullmatch(word) else math.nan for word in words]))
+        count += len(words)
+        line = file.readline()
+    values = np.concatenate(parts)
+    if NUMBER.fullmatch(nodata):
+        with np.errstate(over="ignore"):  # written as 32 bits by some
+            values[values.astype(np.float32) == np.float32(nodata.replace(",", "."))] = np.nan
+    if np.isinf(values).any():
+        at = int(np.flatnonzero(np.isinf(values))[0])
+        raise Bad(f"{path}: row {at // columns + 1}, column {at % columns + 1} is infinite, it must be a number")
+    return values
 
 
 def write(path, values, west, north, cell, crs="", whole=False):

@@ -15,6 +15,7 @@ from helpers import delete_sources, files_of, rows_of, run_script, write_grid, w
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
 sys.path[:0] = [os.path.join(EXAMPLES, "rockyfor3d_parts")]
 import folder_in
+import grids
 
 SIZE, CELL = 200, 2
 for folder in ("folder", "study", "results", "rasters", "bad", "other", "capitals"):
@@ -182,7 +183,28 @@ refused("has no dem.asc", "dem")
 refused("has no rg20.asc", "rg20")
 refused("has nrtrees.asc, but no dbhstd.asc", "dbhstd")
 refused("has net_number.asc, but no net_energy.asc", "net_energy")
-refused("d2.asc is not a whole raster in ESRI ASCII", "d2", "nonsense")
+refused("d2.asc is not a raster in ESRI ASCII", "d2", "nonsense")
+
+
+def text_of(name, old, new):
+    with open(f"folder/{name}.asc", encoding="utf-8") as file:
+        text = file.read()
+    assert old in text, (name, old)
+    return text.replace(old, new, 1)
+
+
+# What is no number is no 0, and nothing is missing or too much.
+refused("rockdensity.asc: row 101, column 11 is 2700kg, it must be a number", "rockdensity", text_of("rockdensity", "2700", "2700kg"))
+refused("dem.asc: row 1, column 1 is #REF!, it must be a number", "dem", text_of("dem", "318.4", "#REF!"))
+refused("soiltype.asc: row 1, column 1 is nan", "soiltype", text_of("soiltype", "6 ", "nan "))
+refused("d1.asc has 39999 numbers, ncols 200 and nrows 200 make 40000", "d1", text_of("d1", "0 0\n", "0\n"))
+refused("d1.asc has 40001 numbers", "d1", text_of("d1", "0 0\n", "0 0 0\n"))
+refused("d1.asc: ncols is 200x, it must be a number of 1 or more", "d1", text_of("d1", "ncols 200", "ncols 200x"))
+# Each axis as it says; a word may stand for nodata.
+text = text_of("d3", "yllcorner 4000000", "yllcenter 4000001").replace("NODATA_value -9999", "NODATA_value null")
+write_text("centre.asc", text.replace("0 0\n", "null 0,5\n", 1))
+read = grids.Grid.read("centre.asc")
+assert (read.west, read.north) == (700000.0, 4000400.0) and np.isnan(read.values[0, -2]) and read.values[0, -1] == 0.5
 refused("d2.asc: west edge is 700001, that of dem.asc is 700000", "d2", only(SOURCES, 0.8), corner=(700001, 4000000))
 refused("soiltype.asc: there is a value 8", "soiltype", 8)
 refused("soiltype.asc: there is a value 2.5, they must be whole numbers from 0 to 7", "soiltype", 2.5)
@@ -193,6 +215,13 @@ refused("rg70 must not be above rg20", "rg70", 0.3)
 refused("does it count by hectare or by cell", "nrtrees", 100000)
 refused("dbhmean.asc: row 1, column 101 is 0 cm", "dbhmean", 0)
 refused("net 7 has the height 0 m", "net_height", 0)
+refused("net_energy.asc: row 101, column 163 of net 7 is 0 kJ, another cell of it 500 kJ", "net_energy", only(net[:20], 500))
+# Too many classes for any step: obstacles are at most as high as the highest.
+many = {name: grids.Grid(name, values, 0.0, 400.0, 2.0) for name, values in (
+    ("dem", rows * 1.0), ("soiltype", columns % 8.0), ("rg70", rows / 10.0), ("rg20", rows / 10.0 + columns / 50.0),
+    ("rg10", rows / 10.0 + columns / 10.0))}
+assert folder_in.ground(many, "bad")[1] == math.inf
+assert max(float(row["rg10"]) for row in rows_of("bad/ground.csv")) == 39.8, rows_of("bad/ground.csv")
 refused("the cells of net 7 that touch each other do not lie along one line, as one is 10.0 cells off", "net_number",
         only([(row, column) for column in (150, 170) for row in range(80, 120)] + [(120, column) for column in range(150, 171)], 7))
 # Whose a file is that the new study does not have nobody knows: it is named, and nothing is written.
