@@ -1,5 +1,6 @@
 #include "counts/lostRocks.h"
 
+#include "base/errors.h"
 #include "rock/results.h"
 #include "shared/arrays.h"
 #include "shared/cells.h"
@@ -18,6 +19,7 @@
 #include <array>
 #include <iterator>
 #include <set>
+#include <string>
 
 namespace rockfall::filters
 {
@@ -46,8 +48,47 @@ LostRocks lostOf(vtkTable* summary)
   return lost;
 }
 
+namespace
+{
+
+/// A piece counts with its rock, which is before it: as a rock of its own it would be released, and
+/// as frequent, once more.
+void checkPieces(vtkPolyData* trajectories)
+{
+  vtkDataArray* piece = trajectories->GetCellData()->GetArray("Piece");
+  std::array<vtkDataArray*, 3> names{};
+  for (std::size_t k = 0; k < names.size(); ++k)
+  {
+    names[k] =
+      trajectories->GetCellData()->GetArray(std::array{ "Iteration", "RockId", "BlockId" }[k]);
+    if (!names[k] || !piece)
+    {
+      return; // told by what asks for them, or there are none
+    }
+  }
+  const vtkIdType first = trajectories->GetNumberOfVerts(); // polydata's cells begin with them
+  for (vtkIdType cell = first; cell < first + trajectories->GetNumberOfLines(); ++cell)
+  {
+    if (piece->GetTuple1(cell) > 0.0 &&
+      (cell == first ||
+        !std::all_of(names.begin(), names.end(),
+          [cell](vtkDataArray* of) { return of->GetTuple1(cell) == of->GetTuple1(cell - 1); })))
+    {
+      const auto text = [cell](vtkDataArray* of)
+      { return std::to_string(std::int64_t(of->GetTuple1(cell))); };
+      throw DataError("The Input has piece " + text(piece) + " of rock " + text(names[1]) +
+        " of iteration " + text(names[0]) + " (block " + text(names[2]) +
+        ") without the rock before it: a rock and its pieces count as one, so a Threshold must "
+        "leave out both or none");
+    }
+  }
+}
+
+} // namespace
+
 LostRocks lostOf(vtkPolyData* trajectories)
 {
+  checkPieces(trajectories);
   LostRocks lost;
   vtkDataArray* fate = trajectories->GetCellData()->GetArray("Fate");
   vtkDataArray* time = trajectories->GetPointData()->GetArray("Time");

@@ -23,7 +23,7 @@ Loss lossOf(double fate);
 LostRocks lostOf(vtkTable* summary);
 
 /// Counts the polylines of trajectories, by the cell array Fate. None without
-/// that array.
+/// that array. Throws DataError for a piece without its rock: all that counts rocks asks this.
 LostRocks lostOf(vtkPolyData* trajectories);
 
 /// Notes on trajectories that are not all of their run, or of several runs that differ, or of one

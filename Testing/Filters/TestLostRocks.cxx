@@ -19,7 +19,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <sstream>
+#include <utility>
 
 using rockfall::Fate;
 
@@ -344,4 +346,29 @@ TEST_F(TestLostRocks, PiecesOfARockThatAreLost)
   EXPECT_EQ(lines->GetValueByName(0, "MovingBefore").ToInt(), 1);
   EXPECT_EQ(lines->GetValueByName(0, "OverEdgeBefore").ToInt(), 1);
   EXPECT_EQ(lines->GetValueByName(0, "Rocks").ToInt(), 1);
+}
+
+/// Each would be a rock of its own, with the frequency of the whole one.
+TEST_F(TestLostRocks, PiecesWithoutTheirRock)
+{
+  HandMadeTrajectories paths;
+  vtkNew<vtkIntArray> pieces;
+  pieces->SetName("Piece");
+  for (const auto& [rock, piece] : { std::pair(0, 0), std::pair(0, 1), std::pair(1, 2) })
+  {
+    paths.AddLevel(0, rock, { 500000.0, 5100000, 50 }, 10.0, 5.0);
+    pieces->InsertNextValue(piece);
+  }
+  paths.Data->GetCellData()->AddArray(pieces);
+  vtkNew<vtkTrajectoryCollector> collector;
+  vtkNew<vtkRockfallHazardMap> map;
+  vtkNew<vtkDispersionAngle> dispersion;
+  map->SetCellSize(5.0);
+  dispersion->SetUseGroups(false);
+  for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{ collector, map, dispersion })
+  {
+    filter->SetInputDataObject(0, paths.Data);
+    filter->Update();
+    this->ExpectOneError({ "piece 2 of rock 1 of iteration 0 (block 101)", "without the rock" });
+  }
 }
