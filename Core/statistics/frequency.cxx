@@ -60,14 +60,24 @@ void RockFrequencies::add(int rock, std::int64_t blockId, const Release& release
   {
     throw DataError(name() + ", it must be finite and not negative");
   }
-  Release& known = releases_[{ rock, blockId }];
-  if (known.iterations > 0 && known.frequency != release.frequency)
+  const auto [at, isNew] = releases_.try_emplace({ rock, blockId });
+  Release& known = at->second;
+  if (!isNew && known.frequency != release.frequency)
   {
     throw DataError(
       name() + " in one iteration and " + numberText(known.frequency) + " in another");
   }
   known.frequency = release.frequency;
   known.iterations += release.iterations;
+}
+
+void RockFrequencies::release(int rock, std::int64_t blockId)
+{
+  const auto found = releases_.find({ rock, blockId });
+  if (found != releases_.end())
+  {
+    ++found->second.iterations;
+  }
 }
 
 void RockFrequencies::add(const RockFrequencies& other)

@@ -41,6 +41,8 @@ public:
   /// A trajectory of a rock of this frequency, 1/a. Throws DataError if it is negative or not
   /// finite, or another one than the same rock had before.
   void add(int rock, std::int64_t blockId, double frequency);
+  /// Another iteration that released a rock; nothing where its frequency is not known.
+  void release(int rock, std::int64_t blockId);
   /// Those of another part of the run. Throws DataError as above.
   void add(const RockFrequencies& other);
   /// Of one trajectory, 1/a. Throws DataError for a rock that was not added.
@@ -56,7 +58,7 @@ public:
   };
   /// By number and block.
   const std::map<std::pair<int, std::int64_t>, Release>& releases() const { return releases_; }
-  /// As read. Throws DataError if the frequency is not one, or no iteration released it.
+  /// Likewise of so many iterations, which may be none yet.
   void add(int rock, std::int64_t blockId, const Release& release);
 
 private:

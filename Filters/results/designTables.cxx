@@ -32,20 +32,15 @@ std::optional<RockFrequencies> frequenciesOf(const MergedCrossings& merged, vtkD
   {
     return std::nullopt;
   }
-  std::map<std::pair<int, std::int64_t>, double> known;
+  RockFrequencies result;
   for (std::size_t k = 0; k < merged.crossings.size(); ++k)
   {
     const Crossing& c = merged.crossings[k];
-    known[{ c.rock, c.blockId }] = frequency->GetTuple1(vtkIdType(k));
+    result.add(c.rock, c.blockId, { frequency->GetTuple1(vtkIdType(k)), 0 });
   }
-  RockFrequencies result;
   for (const CollectedRock& rock : merged.released)
   {
-    const auto found = known.find({ rock.rock, rock.blockId });
-    if (found != known.end()) // else it passes no line
-    {
-      result.add(rock.rock, rock.blockId, found->second);
-    }
+    result.release(rock.rock, rock.blockId); // of one that passes no line nothing is asked
   }
   return result;
 }

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <utility>
 
 namespace
 {
@@ -289,6 +290,17 @@ TEST_F(TestBarrierDesign, BadInput)
   this->Filter->SetInputData(older);
   this->Filter->Update();
   this->ExpectOneError({ "TopHeight", "anew" });
+  // A rock of 1/4 a year in the first iteration and 1/16 in the second.
+  vtkNew<vtkPolyData> differing;
+  differing->DeepCopy(crossings->GetOutput());
+  for (const auto& [name, number] :
+    { std::pair("RockId", 0), std::pair("BlockId", 100), std::pair("Iteration", 1) })
+  {
+    differing->GetPointData()->GetArray(name)->SetTuple1(4, number);
+  }
+  this->Filter->SetInputData(differing);
+  this->Filter->Update();
+  this->ExpectOneError({ "The Frequency of rock 0 is 0.0625 per year in one iteration and 0.25" });
   this->Filter->SetInputData(none);
   this->Filter->Update();
   this->ExpectOneError({ "CollectorBarrier", "Trajectory Collector" });
