@@ -9,6 +9,7 @@ from matplotlib.patches import Patch, Polygon, Rectangle
 from matplotlib.patheffects import withStroke
 import matplotlib.pyplot as plt
 
+import gis
 from figures import GREY, INK, PAGE, new, picture, place
 
 MOST = 1500  # cells across a picture
@@ -25,7 +26,6 @@ EMBANKMENT = {"color": "#7a4b12", "lw": 3.0}
 NET = {"color": "#0b3d91", "lw": 1.6, "ls": (0, (2, 1))}
 EDGE = {"color": "#1f5a26", "lw": 1.3, "ls": (0, (1, 1))}
 LYING = {"color": "#6b3f1d", "lw": 1.2}
-WEAK, MEDIUM, STRONG = "#f0c419", "#e08a2e", "#8b0a1a"  # light to dark, in grey as well
 
 
 def nice(value, steps=(1.0, 2.0, 5.0, 10.0)):
@@ -309,13 +309,14 @@ def of_band(study, name, values, label, text, norm, ticks, cmap, quantile=None):
     return picture(sheet.figure, f"{text} {scale_text(sheet)}.", name)
 
 
-def classes(study, values, names, text, name, quantile=None):
+def classes(study, values, kinds, text, name, quantile=None):
     sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 17.0, pale=True)
     values = np.where(values > 0, values, np.nan)
-    sheet.show(values, study.map.extent, ListedColormap([WEAK, MEDIUM, STRONG]), BoundaryNorm([0.5, 1.5, 2.5, 3.5], 3))
+    sheet.show(values, study.map.extent, ListedColormap([colour for _, colour, _ in kinds]),
+               BoundaryNorm(np.arange(len(kinds) + 1) + 0.5, len(kinds)))
     few = quantile and too_few(sheet, study.map, quantile)
     sheet.mark(study, stems=False)
-    sheet.legend(17.0, [Patch(fc=c, ec=INK, lw=0.4, label=n) for c, n in zip((WEAK, MEDIUM, STRONG), names)] +
+    sheet.legend(17.0, [Patch(fc=colour, ec=INK, lw=0.4, label=label) for _, colour, label in kinds] +
                  ([Line2D([], [], ls="", label="too few rocks for 95 %", **DOT)] if few else []), columns=3)
     return picture(sheet.figure, f"{text} {scale_text(sheet)}.", name)
 
@@ -345,14 +346,13 @@ def results(study):
         low, high = (10.0 ** edge for edge in (math.floor(math.log10(np.nanmin(rate))), math.ceil(math.log10(np.nanmax(rate)))))
         made.append(of_band(study, "AnnualFrequency", rate, "1/a", "Annual frequency of rocks.", LogNorm(low, high),
                             powers(low, high), "YlGnBu"))
-    weak, strong = study.given["map"].get("EnergyThresholds") or (30, 300)
-    names = [f"weak, below {weak:g} kJ", f"medium, {weak:g} to {strong:g} kJ", f"strong, above {strong:g} kJ"]
-    periods = sorted((int(name[9:-1]), name) for name in raster.numbers
-                     if name.startswith("Intensity") and name[9:-1].isdigit())
+    periods = gis.periods_of(raster.numbers)
+    thresholds = gis.thresholds_of(raster.numbers) or sorted(set(study.given["map"].get("EnergyThresholds", (30.0, 300.0))))
+    kinds = gis.intensities(thresholds)
     for years, name in periods:
-        made.append(classes(study, raster.band(name), names, f"Intensity class of the scenario of {years} years.", name))
+        made.append(classes(study, raster.band(name), kinds, f"Intensity class of the scenario of {years:g} years.", name))
     if not periods and "KineticEnergy95" in raster:
-        made.append(classes(study, np.where(np.isnan(energy), 0, 1 + (energy >= weak) + (energy > strong)), names,
+        made.append(classes(study, np.where(np.isnan(energy), 0, 1 + np.digitize(energy, thresholds)), kinds,
                             "Classes of the 95 % energy. No frequency is in them: where one rock comes, it is of this class.",
                             "Classes", 95))
     return made

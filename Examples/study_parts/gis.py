@@ -26,7 +26,7 @@ RASTERS = tuple((re.compile(pattern), *rest) for pattern, *rest in (
     (r"EnergyLineAngle", (25.0, 27.0, 30.0, 33.0, 36.0, 40.0, 90.0), 1.0, "°", HEIGHT[::-1]),
     (r"AnnualFrequency", (1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1e6), 1.0, "1/a", REACH),
     (r"ReturnPeriod", (10.0, 30.0, 100.0, 300.0, 1000.0, 1e9), 1.0, "a", REACH[::-1])))
-CLASSES = ((1, "#f0c419", "weak"), (2, "#e08a2e", "medium"), (3, "#8b0a1a", "strong"))  # of Intensity…
+INTENSITY = ("#f0c419", "#e08a2e", "#8b0a1a")  # from weak to strong, of Intensity…
 HEAD = "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
 
 
@@ -59,11 +59,38 @@ def labels_of(breaks, factor, unit):
     return [f"up to {bounds[0]} {unit}", *made]
 
 
-def raster_style(name, band):
+def thresholds_of(bands):
+    """Energies between the classes of a map with these bands, ascending, kJ."""
+    return sorted(float(name[21:-2]) for name in bands if name.startswith("ExceedanceProbability"))
+
+
+def periods_of(bands):
+    """Return periods with a class of intensity, ascending, a, and the names of their bands."""
+    return sorted((float(name[9:-1]), name) for name in bands if name.startswith("Intensity"))
+
+
+def intensities(thresholds):
+    """Value, colour and label of each class between ascending thresholds, kJ."""
+    edges = [f"{one:g}" for one in thresholds]
+    labels = [f"below {edges[0]} kJ", *(f"{a} to {b} kJ" for a, b in zip(edges, edges[1:])), f"above {edges[-1]} kJ"] if edges else \
+        ["of any energy"]
+    if len(labels) == len(INTENSITY):
+        labels = [f"{word}, {label}" for word, label in zip(("weak", "medium", "strong"), labels)]
+    ramp = [[int(colour[k:k + 2], 16) for k in (1, 3, 5)] for colour in INTENSITY]
+    made = []
+    for k, label in enumerate(labels):
+        at = k / max(1, len(labels) - 1) * (len(ramp) - 1)
+        low = min(int(at), len(ramp) - 2)
+        mixed = (round(a + (at - low) * (b - a)) for a, b in zip(ramp[low], ramp[low + 1]))
+        made.append((k + 1, "#" + "".join(f"{part:02x}" for part in mixed), label))
+    return made
+
+
+def raster_style(name, band, thresholds=(30.0, 300.0)):
     """The style of one band, or None for those without one."""
     if name.startswith("Intensity"):
-        entries = "".join(f'<paletteEntry value="{value}" alpha="255" color="{colour}" label="{label}"/>'
-                          for value, colour, label in CLASSES)
+        entries = "".join(f'<paletteEntry value="{value}" alpha="255" color="{colour}" label={quoteattr(label)}/>'
+                          for value, colour, label in intensities(thresholds))
         renderer = (f'<rasterrenderer type="paletted" band="{band}" opacity="0.8" alphaBand="-1" nodataColor="">'
                     f"<rasterTransparency/><colorPalette>{entries}</colorPalette></rasterrenderer>")
     else:
@@ -136,6 +163,6 @@ def write_map_styles(path, names):
     """Of a map with these bands: what opens with it, its reach, and a style for every other band that has one."""
     stem = os.path.splitext(path)[0]
     for band, name in enumerate(names, 1):
-        style = raster_style(name, band)
+        style = raster_style(name, band, thresholds_of(names))
         if style and not name.endswith("Error"):
             write_text(stem + (".qml" if name == "ReachProbability" else f"-{name}.qml"), style)

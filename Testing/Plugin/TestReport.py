@@ -157,7 +157,15 @@ for name, unit in (("EnergyInKilojoulesLow", "kJ"), ("EnergyMaximum", "kJ"), ("E
                    ("TopHeight", "m"), ("VelocityX", "m/s"), ("RotationRateX", "rad/s"), ("StartX", "m"), ("Mass", "kg"),
                    ("UncaughtFrequency", "1/a"), ("Share", ""), ("Rocks", ""), ("VerticalAngle", "°"), ("Passing", ""), ("Offset", "m")):
     assert gis.unit_of(name) == unit, (name, gis.unit_of(name))
-assert gis.raster_style("Intensity100a", 3).count("paletteEntry") == 3 and gis.raster_style("Passages", 1) is None
+assert gis.raster_style("Intensity100a", 3).count("paletteEntry") == 3
+# Classes by the map's own thresholds, however many and in whatever order they were typed; periods of half a year, too.
+own_bands = ["ExceedanceProbability300kJ", "Intensity30a", "ExceedanceProbability30kJ", "ExceedanceProbability62.5kJ", "Intensity0.5a"]
+assert gis.thresholds_of(own_bands) == [30.0, 62.5, 300.0] and gis.periods_of(own_bands)[0] == (0.5, "Intensity0.5a")
+entries = re.findall(r'paletteEntry value="(\d)".*?label="([^"]*)"', gis.raster_style("Intensity0.5a", 5, [30.0, 62.5, 300.0]))
+assert entries == [("1", "below 30 kJ"), ("2", "30 to 62.5 kJ"), ("3", "62.5 to 300 kJ"), ("4", "above 300 kJ")], entries
+assert [one[1:] for one in gis.intensities([30.0, 300.0])][::2] == [("#f0c419", "weak, below 30 kJ"), ("#8b0a1a", "strong, above 300 kJ")]
+assert gis.intensities([]) == [(1, "#f0c419", "of any energy")]
+assert gis.raster_style("Passages", 1) is None
 
 # Numbers, scales, rasters.
 for value, shown in ((0, "0"), (1234.5, "1\u2009230"), (0.012345, "0.0123"), (99.96, "100"), (2.5, "2.5"),
@@ -183,7 +191,8 @@ for word in ("The study makes no map", "The study has no lines", "the test slope
 
 
 # Rocks that break count once, and reach as far as their farthest piece.
-finish("pieces", {**{part: study[part] for part in ("rocks", "map")}, "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)"}, "simulation": {
+finish("pieces", {"rocks": study["rocks"], "map": {
+    "CellSize": 5.0, "AnnualFrequency": 1.0, "EnergyThresholds": [300, 20, 60], "ReturnPeriods": [0.5, 30]}, "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)"}, "simulation": {
     **study["simulation"], "Fragmentation": 1, "FragmentationEnergy": 2e4, "FractalDimension": 2.0, "LeastFragment": 0.1},
     "iterations": 2, "chunk": 2})
 assert "Report: " in run("report.py", "pieces")
@@ -191,6 +200,7 @@ with open("pieces/report.html", encoding="utf-8") as file:
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", file.read())).split())
 bodies = rows_of("pieces/summary.csv")
 assert sum(row["Fate"] == "broken" for row in bodies) > 0 and len(bodies) > 6, bodies
+assert "scenario of 0.5 years" in text and "scenario of 30 years" in text, text
 assert "6 rocks, 3 releases in 2 iterations" in text and "from 20 kJ/m³ of normal energy" in text, text[:400]
 few = own.bodies.rows(np.arange(4), Piece=np.array([0.0, 1.0, 2.0, 0.0]), StartX=np.array([0.0, 5.0, 5.0, 0.0]),
                       StopX=np.array([5.0, 30.0, 9.0, 7.0]), StartY=np.zeros(4), StopY=np.zeros(4))
