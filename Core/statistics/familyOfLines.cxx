@@ -36,10 +36,13 @@ CollectorLine parallelOf(const CollectorLine& line, double offset)
   CollectorLine result = line;
   result.offset = offset;
   result.name += (offset > 0.0 ? " +" : " −") + numberText(std::abs(offset)) + " m";
+  // A closed line has a corner where it begins and ends.
+  const bool closed = line.points.front() == line.points.back();
+  const std::size_t first = closed ? normals.size() - 1 : 0, last = closed ? 0 : normals.size() - 1;
   for (std::size_t k = 0; k < line.points.size(); ++k)
   {
-    const Vec2& before = normals[k > 0 ? k - 1 : 0];
-    const Vec2& after = normals[k < normals.size() ? k : k - 1];
+    const Vec2& before = normals[k > 0 ? k - 1 : first];
+    const Vec2& after = normals[k < normals.size() ? k : last];
     const double bend = 1.0 + before.dot(after);
     if (bend < kSharpest)
     {

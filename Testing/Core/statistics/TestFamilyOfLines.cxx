@@ -56,6 +56,21 @@ TEST(FamilyOfLines, ARightAngleKeepsItsDistance)
   EXPECT_LT((lines[5].points[1] - Eigen::Vector2d(5, 4)).norm(), 1e-12);
 }
 
+TEST(FamilyOfLines, AClosedLineHasAClosedParallel)
+{
+  // A house, clockwise: its left is outside.
+  std::vector<CollectorLine> lines = { roadOf(
+    { { 0, 0 }, { 0, 20 }, { 10, 20 }, { 10, 0 }, { 0, 0 } }) };
+  addParallels(lines, 1, 5.0);
+  const Eigen::Vector2d expected[] = { { -5, -5 }, { -5, 25 }, { 15, 25 }, { 15, -5 }, { -5, -5 } };
+  ASSERT_EQ(lines[1].points.size(), 5u);
+  for (int k = 0; k < 5; ++k)
+  {
+    EXPECT_LT((lines[1].points[std::size_t(k)] - expected[k]).norm(), 1e-12) << k;
+  }
+  EXPECT_EQ(lines[1].points.front(), lines[1].points.back()); // to the last bit
+}
+
 TEST(FamilyOfLines, WhatHasNoParallel)
 {
   const CollectorLine bent = roadOf({ { 0, 0 }, { 10, 0 }, { 10, 20 } });
