@@ -4,6 +4,7 @@
 /// Where rocks pass a line, such as a road or a planned barrier, and what a barrier there would
 /// catch.
 
+#include "statistics/frequency.h"
 #include "statistics/path.h"
 #include "statistics/sample.h"
 
@@ -47,7 +48,8 @@ struct Crossing
   double heightOverGround = 0.0;    ///< m, NaN where there is no ground.
   /// Of the centroid over the ground straight under it, m; NaN without a terrain there.
   double centreOverGround = std::numeric_limits<double>::quiet_NaN();
-  double top = std::numeric_limits<double>::quiet_NaN(); ///< topOverGround
+  double top = std::numeric_limits<double>::quiet_NaN();       ///< topOverGround
+  double frequency = std::numeric_limits<double>::quiet_NaN(); ///< Of the rock, 1/a, if known.
   /// Between the horizontal velocity and the line's normal on the side that the rock goes to, rad:
   /// 0 straight across, positive if it goes towards the line's end, ±π/2 along it.
   double horizontalAngle = 0.0;
@@ -78,6 +80,7 @@ struct LineSummary
   SampleStatistics energy;
   SampleStatistics height;       ///< m
   SampleStatistics speed;        ///< m/s
+  FrequencyRange frequencies;    ///< Of all rocks.
   int caught = 0;                ///< As outcomeOf has it, at the first passing.
   double caughtShare = 0.0;      ///< Of those that passed.
   double caughtShareError = 0.0; ///< binomialError.

@@ -108,6 +108,38 @@ double RockFrequencies::weight(const Passage& of) const
   return found->second.frequency / double(found->second.iterations);
 }
 
+void FrequencyRange::add(double frequency)
+{
+  low_ = std::fmin(low_, frequency);
+  high_ = std::fmax(high_, frequency);
+}
+
+void FrequencyRange::add(const FrequencyRange& other)
+{
+  this->add(other.low_);
+  this->add(other.high_);
+}
+
+bool FrequencyRange::differs() const
+{
+  constexpr double rounding = 1e-9;
+  return high_ > low_ * (1.0 + rounding);
+}
+
+std::vector<std::string> FrequencyRange::notes() const
+{
+  if (!this->differs())
+  {
+    return {};
+  }
+  return {
+    "Rocks that pass together differ in their frequencies" +
+    (low_ > 0.0 ? ", by up to " + numberText(high_ / low_, 3) + " times" : std::string()) +
+    ", but quantiles count each rock alike: rare rocks count too much in them, frequent ones too "
+    "little. Release amounts in proportion to frequencies, or read how often an energy is exceeded"
+  };
+}
+
 void FrequencySummarizer::add(const Passage& passage)
 {
   if (cell_.rocks.empty() || cell_.cell != passage.cell)
@@ -118,6 +150,7 @@ void FrequencySummarizer::add(const Passage& passage)
     cell_.frequencies.assign(thresholds_.size() + 1, 0.0);
   }
   const double share = weight_(passage);
+  ofCell_.add(share);
   const double energy = passage.maxima[std::size_t(Hazard::KineticEnergy)];
   for (std::size_t t = 0; t <= thresholds_.size(); ++t)
   {
@@ -135,6 +168,11 @@ void FrequencySummarizer::finish()
   {
     use_(cell_);
     cell_.rocks.clear();
+    if (ofCell_.differs())
+    {
+      differing_.add(ofCell_);
+    }
+    ofCell_ = {};
   }
 }
 

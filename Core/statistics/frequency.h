@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -68,6 +69,21 @@ private:
 /// The note where rocks have frequencies of their own, but AnnualFrequency (1/a) goes before them.
 std::string ownNotUsed(double annualFrequency);
 
+/// Frequencies (1/a) of rocks of one sample: of a line, of a cell.
+class FrequencyRange
+{
+public:
+  void add(double frequency); ///< NaN is not known, and not in it.
+  void add(const FrequencyRange& other);
+  bool differs() const; ///< By more than rounding.
+  /// The note where they differ, as quantiles of the sample count each rock alike; none else.
+  std::vector<std::string> notes() const;
+
+private:
+  double low_ = std::numeric_limits<double>::infinity();
+  double high_ = -std::numeric_limits<double>::infinity();
+};
+
 /// A cell that something passed: first of all rocks, then of those of each threshold.
 struct CellFrequency
 {
@@ -92,9 +108,12 @@ public:
 
   void add(const Passage& passage);
   void finish(); ///< Hands on the last cell.
+  /// Of the rocks of cells in which they differ.
+  const FrequencyRange& differing() const { return differing_; }
 
 private:
   std::vector<double> thresholds_;
+  FrequencyRange ofCell_, differing_;
   std::function<double(const Passage&)> weight_;
   std::function<void(const CellFrequency&)> use_;
   CellFrequency cell_;

@@ -374,6 +374,10 @@ def notes(study):
     if fixed:
         made.append(f"The volumes of the {fixed} releases are drawn once: all iterations have the same, and more of them try no "
                     "others. RedrawVolume draws them anew in each.")
+    often = study.rocks["Frequency"] if "Frequency" in study.rocks else np.zeros(1)
+    if often.max() > (1.0 + 1e-9) * often.min():
+        made.append("Rocks differ in their frequencies, but 95 % values and design levels count each simulated rock alike, so rare rocks "
+                    "count too much in them. Release amounts in proportion to frequencies, or read the annual frequencies.")
     steps = study.bodies["ContactSteps"].sum()
     unsettled = study.bodies["UnsettledSteps"].sum() / steps if steps else 0.0
     if unsettled > 0.003:

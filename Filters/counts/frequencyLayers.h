@@ -56,6 +56,8 @@ public:
     }
   }
   void finish() { summarizer_.finish(); }
+  /// Of the rocks of cells in which frequencies differ.
+  const FrequencyRange& differing() const { return summarizer_.differing(); }
 
 private:
   void set(const CellFrequency& cell);

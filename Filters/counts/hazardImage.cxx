@@ -270,6 +270,8 @@ public:
     }
   }
 
+  bool hasQuantiles() const { return highest_ > 0.0; }
+
   /// Notes on cells that were left empty, and where no cell has the rocks that the highest quantile
   /// of the map needs.
   std::vector<std::string> notes() const
@@ -422,6 +424,10 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
       withTerrain ? 1.0 : 0.0 });
   layers.tellLeftOut(image->GetFieldData());
   std::ranges::move(layers.notes(), std::back_inserter(notes));
+  if (layers.hasQuantiles())
+  {
+    std::ranges::move(frequencyLayers.differing().notes(), std::back_inserter(notes));
+  }
   tellLost(lost, image->GetFieldData(), notes);
 }
 

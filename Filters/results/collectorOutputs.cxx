@@ -178,9 +178,14 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
   std::vector<std::size_t> missed;
   std::map<int, std::vector<std::size_t>> few; // by the highest quantile that they can give
   LostRocks most;                              // of the line that misses most
+  FrequencyRange differing;                    // of lines on which frequencies differ
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     most = k == 0 || lost[k].lost() > most.lost() ? lost[k] : most;
+    if (summaries[k].frequencies.differs())
+    {
+      differing.add(summaries[k].frequencies);
+    }
     if (summaries[k].rocks == 0)
     {
       missed.push_back(k);
@@ -206,6 +211,7 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
       notes.push_back("Too few rocks passed " + named(of) + " for " + quantilesMissed(highest));
     }
   }
+  std::ranges::move(differing.notes(), std::back_inserter(notes));
   return notes;
 }
 

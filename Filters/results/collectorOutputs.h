@@ -56,7 +56,7 @@ std::vector<LostRocks> lostBefore(
   std::size_t lines, std::span<const Crossing> crossings, const ReleasedRocks& released);
 
 /// Notes on lines that no rock reached, that rocks may have been lost before,
-/// and that too few passed for the quantiles.
+/// that too few passed for the quantiles, and that these are of rocks of different frequencies.
 std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
   std::span<const CollectorLine> lines, std::span<const LostRocks> lost);
 

@@ -123,7 +123,7 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
                *block = one("BlockId"), *number = one("Passing"), *energy = one("KineticEnergy"),
                *height = one("HeightOverGround"),
                *velocity = crossingNumbers(fields, "Velocity", 3, input),
-               *piece = fields->GetArray("Piece");
+               *piece = fields->GetArray("Piece"), *frequency = fields->GetArray("Frequency");
   vtkDataArray* top = fields->GetArray("TopHeight");
   if (!top)
   {
@@ -145,6 +145,7 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
     c.kineticEnergy = energy->GetTuple1(id);
     c.heightOverGround = height->GetTuple1(id);
     c.top = top->GetTuple1(id);
+    c.frequency = frequency ? frequency->GetTuple1(id) : c.frequency;
     velocity->GetTuple(id, c.velocity.data());
     if (c.line < 0 || std::size_t(c.line) >= lines.size())
     {

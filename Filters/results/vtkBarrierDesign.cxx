@@ -18,7 +18,9 @@
 #include "vtkPolyData.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -112,6 +114,20 @@ int vtkBarrierDesign::RequestData(
       const filters::MergedCrossings merged = filters::mergeCrossings({ &crossings, 1 }, points);
       const std::vector<filters::DesignLine> lines =
         filters::designLines(merged, points, this->AnnualFrequency);
+      rockfall::FrequencyRange differing;
+      for (const filters::DesignLine& line : lines)
+      {
+        rockfall::FrequencyRange ofLine;
+        for (const rockfall::DesignPassing& passing : line.passings)
+        {
+          ofLine.add(passing.frequency);
+        }
+        if (ofLine.differs())
+        {
+          differing.add(ofLine);
+        }
+      }
+      std::ranges::move(differing.notes(), std::back_inserter(notes));
       vtkNew<vtkTable> design, classes, sources, places;
       filters::writeDesign(lines, factors, design);
       filters::writeClasses(lines, classes);

@@ -253,6 +253,7 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
 {
   Collected collected;
   std::vector<rockfall::Crossing> all, found;
+  vtkDataArray* frequency = trajectories->GetCellData()->GetArray("Frequency");
   vtkDataArray* fate = trajectories->GetCellData()->GetArray("Fate"); // forEachPath asks for it
   rockfall::filters::forEachPath(trajectories, origin,
     [&](const rockfall::RockPath& path, std::int64_t cell)
@@ -263,8 +264,9 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
       {
         found.clear();
         rockfall::appendCrossings(path, lines[k], int(k), terrain, found);
-        for (const rockfall::Crossing& crossing : found)
+        for (rockfall::Crossing& crossing : found)
         {
+          crossing.frequency = frequency ? frequency->GetTuple1(cell) : crossing.frequency;
           collected.crossings.push_back({ crossing, cell });
           all.push_back(crossing);
         }

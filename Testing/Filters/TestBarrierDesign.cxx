@@ -3,6 +3,7 @@
 
 #include "vtkBarrierDesign.h"
 #include "vtkMergeCollectors.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkTrajectoryCollector.h"
 
@@ -237,6 +238,34 @@ TEST_F(TestBarrierDesign, PlacesAlongAFamily)
   merge->AddInputDataObject(0, collector->GetOutput());
   this->Filter->SetInputConnection(merge->GetOutputPort());
   EXPECT_EQ(this->Number(3, "Offset", 1), -10.0);
+}
+
+/// Levels and quantiles are of the simulated rocks, however rare each is.
+TEST_F(TestBarrierDesign, QuantilesOfRocksThatDifferInFrequency)
+{
+  const auto told = [](vtkAlgorithm* filter, int port)
+  {
+    filter->Update();
+    auto* notes = vtkStringArray::SafeDownCast(
+      filter->GetOutputDataObject(port)->GetFieldData()->GetAbstractArray("Notes"));
+    int count = 0;
+    for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
+    {
+      count += notes->GetValue(k).find("by up to 16 times, but quantiles count each rock alike") !=
+        std::string::npos;
+    }
+    return count;
+  };
+  const auto unlike = this->Collect(), unknown = this->Collect(false);
+  vtkNew<vtkMergeCollectors> merge;
+  merge->SetInputData(unlike->GetOutput());
+  this->Filter->SetInputData(unlike->GetOutput());
+  EXPECT_EQ(told(unlike, 1), 1);
+  EXPECT_EQ(told(merge, 1), 1);
+  EXPECT_EQ(told(this->Filter, 0), 1);
+  this->Filter->SetAnnualFrequency(0.5); // of all alike
+  EXPECT_EQ(told(this->Filter, 0), 0);
+  EXPECT_EQ(told(unknown, 1), 0);
 }
 
 TEST_F(TestBarrierDesign, PartsAreTheWhole)

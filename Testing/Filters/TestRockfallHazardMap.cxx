@@ -279,6 +279,37 @@ TEST_F(TestRockfallHazardMap, EnergyLineAnglesAndWhatIsLeftEmpty)
   this->ExpectOneError({ "LeastReach is 1.5" });
 }
 
+/// Where rocks of different frequencies come to one cell, quantiles count each alike, and say so.
+TEST_F(TestRockfallHazardMap, QuantilesOfRocksThatDifferInFrequency)
+{
+  vtkNew<vtkDoubleArray> frequency;
+  frequency->SetName("Frequency");
+  for (int rock = 0; rock < 2; ++rock)
+  {
+    this->Paths.AddLevel(0, rock, { 1, 3.0 + 10 * rock, 50 }, 20, 10);
+    frequency->InsertNextValue(rock == 0 ? 0.5 : 0.01);
+  }
+  this->Paths.Data->GetCellData()->AddArray(frequency);
+  const auto told = [this]
+  {
+    auto* notes =
+      vtkStringArray::SafeDownCast(this->Map()->GetFieldData()->GetAbstractArray("Notes"));
+    int count = 0;
+    for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
+    {
+      count += notes->GetValue(k).find("by up to 50 times") != std::string::npos;
+    }
+    return count;
+  };
+  this->Filter->SetCellSize(5.0); // apart
+  EXPECT_EQ(told(), 0);
+  this->Filter->SetCellSize(40.0);
+  EXPECT_EQ(told(), 1);
+  this->Filter->RemoveAllStatistics();
+  this->AddStatistics({ 1 });
+  EXPECT_EQ(told(), 0);
+}
+
 /// Further rocks of another source do not make outliers of those that always come.
 TEST_F(TestRockfallHazardMap, LeastReachAsksEachSource)
 {

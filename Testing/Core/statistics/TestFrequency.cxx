@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -75,6 +76,36 @@ std::vector<CellFrequency> cellsOf(const std::vector<Passage>& sorted,
 }
 
 } // namespace
+
+TEST(Frequency, RocksOfOneSampleThatDiffer)
+{
+  FrequencyRange range;
+  EXPECT_FALSE(range.differs());
+  range.add(0.1);
+  range.add(std::numeric_limits<double>::quiet_NaN());
+  range.add(0.3 - 0.2); // the same but for rounding
+  EXPECT_TRUE(range.notes().empty());
+  range.add(0.4);
+  ASSERT_EQ(range.notes().size(), 1u);
+  EXPECT_NE(range.notes()[0].find("by up to 4 times"), std::string::npos) << range.notes()[0];
+
+  // Each cell by itself: two sources that do not meet are no reason for a note.
+  const auto differing = [](std::initializer_list<Passage> passed)
+  {
+    const RockFrequencies rocks = release();
+    FrequencySummarizer summarizer(
+      {}, [&](const Passage& passage) { return rocks.weight(passage); },
+      [](const CellFrequency&) {});
+    for (const Passage& passage : passed)
+    {
+      summarizer.add(passage);
+    }
+    summarizer.finish();
+    return summarizer.differing().differs();
+  };
+  EXPECT_TRUE(differing({ passageOf(3, 0, 0, kJ), passageOf(3, 0, 4, kJ) }));
+  EXPECT_FALSE(differing({ passageOf(3, 0, 0, kJ), passageOf(4, 0, 4, kJ) }));
+}
 
 TEST(Frequency, OfCellsByHand)
 {
