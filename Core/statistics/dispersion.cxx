@@ -145,7 +145,10 @@ Dispersion measureDispersion(std::span<const std::vector<Vec3>> paths, double az
     result.lateralMin = result.lateralMax = 0.0; // all of them start beyond L
   }
   result.width = result.lateralMax - result.lateralMin;
-  result.angle = result.length > 0.0 ? std::atan(result.width / (2.0 * result.length)) : 0.0;
+  if (result.length > 0.0)
+  {
+    result.angle = std::atan(result.width / (2.0 * result.length));
+  }
   const int n = int(ends.size());
   result.lateralDeviation =
     n > 1 ? std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1))) : 0.0;

@@ -5,6 +5,7 @@
 
 #include "base/types.h"
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -14,10 +15,10 @@ namespace rockfall
 /// The dispersion of one group of trajectories.
 struct Dispersion
 {
-  int trajectories = 0;    ///< How many counted.
-  double length = 0.0;     ///< L, falling length along the cross-section, m.
-  double width = 0.0;      ///< W, m.
-  double angle = 0.0;      ///< θ, rad.
+  int trajectories = 0; ///< How many counted.
+  double length = 0.0;  ///< L, falling length along the cross-section, m.
+  double width = 0.0;   ///< W, m.
+  double angle = std::numeric_limits<double>::quiet_NaN(); ///< θ, rad; none where L is 0.
   double lateralMin = 0.0; ///< Extreme lateral deviations: W = lateralMax − lateralMin, m.
   double lateralMax = 0.0;
   double lateralDeviation = 0.0; ///< Standard deviation of the lateral stop/exit positions, m.

@@ -241,6 +241,7 @@ int vtkDispersionAngle::RequestData(
       const auto deviation = addArray<vtkDoubleArray>(rows, "LateralDeviation");
       const auto direction = addArray<vtkDoubleArray>(rows, "Azimuth");
       RunOuts runOuts(rows);
+      int without = 0; // groups
       vtkNew<vtkPolyData> lines;
       Wedges wedges(lines);
       for (const auto& group : groups)
@@ -258,6 +259,7 @@ int vtkDispersionAngle::RequestData(
         lateralMax->InsertNextValue(dispersion.lateralMax);
         deviation->InsertNextValue(dispersion.lateralDeviation);
         direction->InsertNextValue(compass(azimuth));
+        without += std::isnan(dispersion.angle);
         runOuts.Append(ends);
       }
       for (vtkDataObject* made :
@@ -266,6 +268,11 @@ int vtkDispersionAngle::RequestData(
         rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
       }
       std::vector<std::string> notes = rockfall::filters::doubtsOn(input, nullptr);
+      if (without > 0)
+      {
+        notes.push_back(std::to_string(without) + " of " + std::to_string(groups.size()) +
+          " groups have no Theta: none of their trajectories gets anywhere along the direction");
+      }
       const std::vector<std::string> reach = runOuts.Notes();
       notes.insert(notes.end(), reach.begin(), reach.end());
       rockfall::filters::tellLost(rockfall::filters::lostOf(input), table->GetFieldData(), notes);

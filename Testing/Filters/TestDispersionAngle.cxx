@@ -152,6 +152,14 @@ TEST_F(TestDispersionAngle, GivenDirection)
   EXPECT_NEAR(this->Number(0, "Azimuth"), 90.0, 1e-12);
   EXPECT_NEAR(this->Number(0, "L"), 80 * std::cos(30 * rad), 1e-9);
   EXPECT_NEAR(this->Number(0, "LateralMax"), 80 * std::sin(30 * rad), 1e-9);
+  // The other way round there is no angle, and a note says why.
+  this->Filter->SetDirection(-2.0, 0.0, 0.0);
+  EXPECT_EQ(this->Number(0, "L"), 0.0);
+  EXPECT_TRUE(std::isnan(this->Number(0, "Theta")));
+  auto* notes =
+    vtkStringArray::SafeDownCast(this->Table()->GetFieldData()->GetAbstractArray("Notes"));
+  ASSERT_TRUE(notes);
+  EXPECT_EQ(notes->GetValue(0).find("1 of 1 groups have no Theta"), 0u) << notes->GetValue(0);
 }
 
 TEST_F(TestDispersionAngle, WedgeSpansWidthAndLength)

@@ -79,13 +79,20 @@ TEST(Dispersion, WhatStartsBeyondLIsLeftOut)
   EXPECT_NEAR(d.lateralDeviation, std::sqrt(18.0), 1e-12); // of two that are 6 m apart
 }
 
-TEST(Dispersion, RefusesAndStaysFinite)
+TEST(Dispersion, RefusesAndHasNoAngleWithoutALength)
 {
   EXPECT_THROW(measureDispersion({}, 0.0, -1.0), ParameterError);
   EXPECT_THROW(measureDispersion({}, NAN), ParameterError);
   EXPECT_EQ(measureDispersion({}, 0.0).trajectories, 0);
   const std::vector<std::vector<Vec3>> still = { { Vec3(1, 2, 3) } };
-  EXPECT_EQ(measureDispersion(still, 0.0).angle, 0.0);
+  EXPECT_TRUE(std::isnan(measureDispersion(still, 0.0).angle));
+  // Against the direction: 10 m wide, and no way along it.
+  const std::vector<std::vector<Vec3>> back = { { Vec3(0, 0, 9), Vec3(-20, 5, 0) },
+    { Vec3(0, 0, 9), Vec3(-20, -5, 0) } };
+  const Dispersion reversed = measureDispersion(back, 0.0);
+  EXPECT_EQ(reversed.length, 0.0);
+  EXPECT_EQ(reversed.width, 10.0);
+  EXPECT_TRUE(std::isnan(reversed.angle));
 }
 
 TEST(Dispersion, ARockThatBrokeCountsOnce)
