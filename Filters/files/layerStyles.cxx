@@ -1,6 +1,10 @@
 #include "files/layerStyles.h"
 
+#include "rock/results.h"
+
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <utility>
 
 namespace rockfall::filters
@@ -34,17 +38,16 @@ std::string oneSymbol(bool line, const std::string& colour)
 
 std::string byFate()
 {
-  const std::pair<const char*, const char*> fates[] = { { "rested", "35,35,35,255" },
-    { "left the domain", "240,59,32,255" }, { "moving", "254,178,76,255" },
-    { "caught", "67,162,202,255" }, { "lost in nodata", "200,200,200,255" } };
+  constexpr std::array<const char*, 6> colours = { "35,35,35,255", "240,59,32,255",
+    "254,178,76,255", "67,162,202,255", "200,200,200,255", "153,112,171,255" };
+  static_assert(std::size(colours) == std::size_t(Fate::Broken) + 1); // each has one
   std::string categories, symbols;
-  int k = 0;
-  for (const auto& [name, colour] : fates)
+  for (std::size_t k = 0; k < colours.size(); ++k)
   {
-    const std::string number = std::to_string(k++);
-    categories += "<category value=\"" + number + "\" symbol=\"" + number + "\" label=\"" + name +
-      "\" render=\"true\"/>";
-    symbols += symbol(number, false, colour);
+    const std::string number = std::to_string(k);
+    categories += "<category value=\"" + number + "\" symbol=\"" + number + "\" label=\"" +
+      fateName(Fate(int(k))) + "\" render=\"true\"/>";
+    symbols += symbol(number, false, colours[k]);
   }
   return std::string("<renderer-v2 type=\"categorizedSymbol\" attr=\"Fate\"") + open +
     "><categories>" + categories + "</categories><symbols>" + symbols + "</symbols></renderer-v2>";

@@ -120,6 +120,8 @@ def styles_of(path):
 styles = styles_of("paths.gpkg")
 assert {name: style.find("renderer-v2").get("type") for name, style in styles.items()} == {
     "trajectories": "singleSymbol", "ends": "categorizedSymbol", "samples": "graduatedSymbol"}, styles
+assert [(one.get("value"), one.get("label")) for one in styles["ends"].iter("category")] == list(zip("012345", (
+    "rested", "left the domain", "moving", "caught", "lost in nodata", "broken"))), styles["ends"]
 crossing = styles_of("crossings.gpkg")["points"]
 aliases = {one.get("field"): one.get("name") for one in crossing.iter("alias")}
 assert aliases["KineticEnergy"] == "KineticEnergy (J)" and aliases["Mass"] == "Mass (kg)" and "Line" not in aliases
