@@ -363,10 +363,13 @@ def notes(study):
     """What a reader should know before the numbers."""
     made = list(dict.fromkeys(re.sub(r"(?<!\S)/\S*/", "", note) for note in study.slope.notes))  # files by their names
     rocks_, total = study.rocks, len(study.rocks)
-    least = {name: value for name, value in (study.given.get("map") or {}).items() if name.startswith("Least") and value}
-    if least:
-        made.append("Cells of the map below " + " or ".join(f"{name} {value}" for name, value in least.items()) +
-                    " are left empty: outliers, which are no less possible for it.")
+    least = study.given.get("map") or {}
+    if least.get("LeastReach"):
+        made.append(f"Cells of the map below LeastReach {least['LeastReach']} are left empty where that holds of each source: "
+                    "outliers, which are no less possible for it.")
+    if least.get("LeastAngle"):
+        made.append(f"Rocks do not count in cells of the map where their energy-line angle is below LeastAngle {least['LeastAngle']}°: "
+                    "they come there all the same.")
     unmoved = int((rocks_["RunOut"] < 0.1).sum())
     if unmoved:
         made.append(f"{unmoved} of {total} rocks got no farther than 0.1 m.")

@@ -116,6 +116,8 @@ assert ("a rock passes every", "a", ["4", "–"]) in rows and not tables.fixed_v
 own.rocks.columns.update(SourceId=np.zeros(12), Frequency=np.full(12, 0.04))
 assert [tables.often(own, k) for k in own.given_lines()] == ["0.25", "below 0.03"]  # ln 20 · 0.04 / 4
 assert "count each simulated rock alike" not in " ".join(tables.notes(own))
+own.given["map"]["LeastAngle"] = 27
+assert "energy-line angle is below LeastAngle 27°" in " ".join(tables.notes(own))
 own.rocks.columns.update(Frequency=np.linspace(0.01, 0.04, 12))
 assert "count each simulated rock alike" in " ".join(tables.notes(own))
 tables.MANY_VOLUMES = 3  # of one source: those of a law
