@@ -46,9 +46,7 @@ double energyHad(const TrajectorySummary& summary, double gravity)
 
 double gainFromNowhere(const TrajectorySummary& summary, double gravity)
 {
-  const EnergyAudit& e = summary.energy;
-  const double taken = e.friction + e.restitution + e.vibration + e.damping + e.scars + e.rolling;
-  return std::max({ 0.0, -taken, -e.numerical }) / energyHad(summary, gravity);
+  return summary.gained / energyHad(summary, gravity);
 }
 
 double lossToNowhere(const TrajectorySummary& summary, double gravity)

@@ -152,6 +152,9 @@ struct TrajectorySummary
   /// of the two, J: the sum over rocks, and the losses of impacts between rocks, are that of
   /// `exchanged`.
   double lastingLoss = 0.0;
+  /// The most by which its energy rose over what it had been before, with springs of the slope and
+  /// what it gave to other rocks, J: from nowhere, as the slope has none to give.
+  double gained = 0.0;
   double finesMass = 0.0;   ///< Of pieces too small to be followed, kg.
   double finesEnergy = 0.0; ///< Kinetic energy that they fly off with, J.
   std::uint64_t hash = 0;   ///< Of the motion: `motionHash`, given by the ensemble.
@@ -166,8 +169,8 @@ struct Trajectory
   std::vector<StructureEvent> structures; ///< In the order of time.
 };
 
-/// Energy that a rock has got from nowhere, of what it released and other rocks gave it: from the
-/// slope, which has none to give, or from the numerics; 0: none. `gravity`: m/s².
+/// Energy that a rock has got from nowhere, of what it released and other rocks gave it; 0: none.
+/// `gravity`: m/s².
 double gainFromNowhere(const TrajectorySummary& summary, double gravity);
 /// The same of energy that it has lost to nowhere, by the numerics.
 double lossToNowhere(const TrajectorySummary& summary, double gravity);

@@ -424,7 +424,7 @@ void commitStep(Fall& fall, StepKind kind, const StepOutcome& outcome, double en
     return;
   }
   fall.recorder.recordBetween(body, body.before, body.state, touching);
-  fall.recorder.follow(body.state);
+  fall.recorder.follow(body);
   fall.impact.follow(body, body.before, taken, outcome, fall.recorder);
   // A soft block that is still being pressed together leaves its contacts and comes back to them:
   // it has taken off when it has not touched for a period of its own.

@@ -140,7 +140,7 @@ bool strike(Fall& fall, std::span<const StruckPoint> touches, bool carried)
   resistRollingAt(fall, touches, { points.data(), touches.size() });
   fall.impact.finish(body, fall.recorder, true, true);
   fall.recorder.afterJump(body, carried);
-  fall.recorder.follow(body.state);
+  fall.recorder.follow(body);
   body.acceleration.setZero();
   body.spinAcceleration.setZero();
   return true;

@@ -102,6 +102,7 @@ void Recorder::audit(const RockBody& body, const BlockState& state)
 void Recorder::begin(const RockBody& body)
 {
   energyAtStart_ = body.mechanicalEnergy(gravity_);
+  leastEnergy_ = energyAtStart_ + body.springEnergy + body.energy.exchanged;
   last_ = body.state.position;
   knot_ = body.state;
   trajectory_.summary.start = body.state.position;
@@ -285,6 +286,15 @@ void Recorder::follow(const BlockState& state)
 {
   trajectory_.summary.pathLength += (state.position - last_).norm();
   this->reach(state);
+}
+
+void Recorder::follow(const RockBody& body)
+{
+  this->follow(body.state);
+  const double energy = body.mechanicalEnergy(gravity_) + body.springEnergy + body.energy.exchanged;
+  leastEnergy_ = std::min(leastEnergy_, energy);
+  double& gained = trajectory_.summary.gained;
+  gained = std::max(gained, energy - leastEnergy_);
 }
 
 void Recorder::followFlight(const BlockState& from, const BlockState& to)

@@ -44,6 +44,8 @@ public:
   void resume(const RockBody& body);
   /// Follows maxima and path length; call for every state that is reached …
   void follow(const BlockState& state);
+  /// … with its energy, where contact may have changed it …
+  void follow(const RockBody& body);
   /// … or once for a whole flight, which is fastest at one of its ends.
   void followFlight(const BlockState& from, const BlockState& to);
   /// Adds the last state if it is not at an even time, or the only one; sums the fall up.
@@ -95,6 +97,7 @@ private:
   double gravity_;
   Retention retention_;
   double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
+  double leastEnergy_ = 0.0;   ///< So far, with springs and what it gave to other rocks, J.
   std::int64_t next_ = 0;
   Vec3 last_ = Vec3::Zero();           ///< The last position reached.
   Knot knot_;                          ///< The last one.

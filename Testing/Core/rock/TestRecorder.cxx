@@ -65,3 +65,38 @@ TEST(Recorder, ARockThatIsStruckWithinAStepGoesStraight)
     EXPECT_LT((samples.back().velocity - after).norm(), 1e-9);
   }
 }
+
+// The most that the energy rises over its least so far, and neither what other rocks give nor what
+// a spring returns.
+TEST(Recorder, EnergyFromNowhereIsKeptWhateverIsLostBefore)
+{
+  const Terrain slope = makePlane(5, 5.0, 0.0, 0.0, material(0.5, 30.0));
+  const Surface surface(slope, 1, 0);
+  const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e10, 0.2);
+  RockBody body(block);
+  body.state.velocity.x() = 10.0; // 125 kJ
+  Recorder recorder(surface, block, {});
+  recorder.begin(body);
+  const double& gained = recorder.trajectory().summary.gained;
+  const auto goTo = [&](double speed, double spring, double given)
+  {
+    body.state.velocity.x() = speed;
+    body.springEnergy = spring;
+    body.energy.exchanged = given;
+    recorder.follow(body);
+  };
+  goTo(4.0, 0.0, 0.0); // 20 kJ
+  EXPECT_EQ(gained, 0.0);
+  goTo(0.0, 20e3, 0.0);
+  goTo(4.0, 0.0, 0.0);
+  EXPECT_NEAR(gained, 0.0, 1e-9);
+  goTo(6.0, 0.0, -25e3); // 45 kJ, of which others gave 25
+  EXPECT_NEAR(gained, 0.0, 1e-9);
+  goTo(8.0, 0.0, -25e3); // 80 kJ
+  EXPECT_NEAR(gained, 35e3, 1e-6);
+  goTo(2.0, 0.0, -25e3);
+  goTo(6.0, 0.0, -25e3); // 5 to 45 kJ
+  EXPECT_NEAR(gained, 40e3, 1e-6);
+  goTo(0.0, 0.0, -25e3);
+  EXPECT_NEAR(gained, 40e3, 1e-6);
+}
