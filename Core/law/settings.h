@@ -118,6 +118,10 @@ inline constexpr double kStillTime = 0.5;
 /// ever. Longer: piles that never sleep.
 inline constexpr double kLingerTime = 3.0;
 inline constexpr double kLingerWay = 0.03;
+/// But not what goes away and faster: less than this share of its way back, and in the second half
+/// of the time by so much further than in the first. Lower: creeping piles stay awake.
+inline constexpr double kComesBack = 0.01;
+inline constexpr double kFaster = 0.1;
 /// Rotation counts against that from this share of √(g r) at the rim on. Rock that breaks at 50 MPa
 /// bears a cube on a patch of 0.016 r^1.5 (SI), whose friction at μ = 0.7 takes 0.3 √r m/s off the
 /// rim in a second: 0.03 √r m/s stops in a tenth of one, whatever the size.

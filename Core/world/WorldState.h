@@ -54,8 +54,10 @@ struct FallingRock
 
   // Members that the step of an island needs lie together, before and behind where `sim` begins.
   Place restAnchor;
-  Place slowRestAnchor; ///< The same, further and for longer.
-  PlacedBlock end;      ///< Of the step at hand, as long as it is being solved.
+  Place slowRestAnchor;  ///< The same, further and for longer,
+  double furthest = 0.0; ///< how far the rock has been from that, m,
+  double halfway = 0.0;  ///< and how far within the first half of the time, m.
+  PlacedBlock end;       ///< Of the step at hand, as long as it is being solved.
   PairBody hull;
   PairBody endHull;
   int place = -1;        ///< Among the bodies of its island in the step at hand.

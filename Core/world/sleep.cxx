@@ -10,6 +10,17 @@
 namespace rockfall
 {
 
+namespace
+{
+
+void lingerAnew(FallingRock& rock)
+{
+  rock.slowRestAnchor = rock.sim.state();
+  rock.furthest = rock.halfway = 0.0;
+}
+
+} // namespace
+
 bool isStill(const WorldState& world, FallingRock& rock)
 {
   const RockBody& body = rock.body();
@@ -32,9 +43,18 @@ bool isStill(const WorldState& world, FallingRock& rock)
   }
   const double near = kLingerWay * r, further = displacementFrom(rock.slowRestAnchor);
   const auto turns = [&] { return r * body.state.spin.norm() > kLingerRim * unit; };
-  if (further > near || (turns() && further + turnFrom(rock.slowRestAnchor) > near))
+  rock.furthest = std::max(rock.furthest, further);
+  const double since = world.time - rock.slowRestAnchor.time;
+  if (since <= 0.5 * kLingerTime)
   {
-    rock.slowRestAnchor = body.state;
+    rock.halfway = rock.furthest;
+  }
+  // What swings comes back, what settles becomes slower: neither is true of what begins to slide.
+  const bool slides = since >= kLingerTime && further >= (1.0 - kComesBack) * rock.furthest &&
+    further > (1.0 + kFaster) * 2.0 * rock.halfway && further > kComesBack * near;
+  if (slides || further > near || (turns() && further + turnFrom(rock.slowRestAnchor) > near))
+  {
+    lingerAnew(rock);
   }
   return world.time - rock.restAnchor.time >= kStillTime ||
     world.time - rock.slowRestAnchor.time >= kLingerTime;
@@ -45,7 +65,8 @@ void restAnew(FallingRock& rock)
   RockBody& body = rock.body();
   if (!body.done)
   {
-    rock.restAnchor = rock.slowRestAnchor = body.state;
+    rock.restAnchor = body.state;
+    lingerAnew(rock);
     body.quietTime = 0.0;
   }
 }
@@ -65,7 +86,8 @@ void wake(FallingRock& rock, double time)
 {
   rock.asleep = false;
   rock.sim.wake(time);
-  rock.restAnchor = rock.slowRestAnchor = rock.sim.state();
+  rock.restAnchor = rock.sim.state();
+  lingerAnew(rock);
 }
 
 bool touchedLately(const RockPair& pair, double time)
