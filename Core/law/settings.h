@@ -266,6 +266,11 @@ inline constexpr double kSurely = 3e-2;
 inline constexpr double kMissed = 2e-3;
 /// Looks after which no further trees are let go: they hold for the rest of the step.
 inline constexpr int kTreeLooks = 8;
+/// Share of its capacity below which a tree is not asked what drives rocks into it takes of that in
+/// a step. Larger: pushes of many steps go unseen; smaller: more steps solved twice.
+inline constexpr double kAskedShare = 0.01;
+/// Share by which the push of a tree has grown when it is asked again.
+inline constexpr double kMorePush = 0.1;
 /// Shortest step, s; the end of a run is as near.
 inline constexpr double kTooShort = 1e-9;
 

@@ -57,6 +57,11 @@ struct IslandWork
       Yes,
       No,
     } stands;
+    Vec3 push = Vec3::Zero(); ///< On the rock while it stands, N s,
+    Vec3 at = Vec3::Zero();   ///< and where that acts, m.
+    double away = 0.0;        ///< Speed at which the rock leaves it then, m/s.
+    double taken = 0.0;       ///< Of what drives the rock into it in the step, J.
+    double driven = 0.0;      ///< The same with what it took of all before, J.
   };
   std::vector<Stem> stems;
   int looks = 0; ///< Number that the step has had.

@@ -23,17 +23,42 @@ const FallingRock& StepTrees::rockOf(const Stem& stem) const
 }
 
 template <class Use>
-void StepTrees::forContacts(const Stem& stem, Use&& use) const
+void StepTrees::forAll(std::size_t member, Use&& use) const
 {
-  const FallingRock& rock = this->rockOf(stem);
+  const FallingRock& rock = world_.rocks[std::size_t(island_.members[member])];
+  const auto ask = [&](const Contact& contact, std::size_t k)
+  {
+    const int tree = rock.fall().structures.treeOf(contact);
+    if (tree >= 0)
+    {
+      use(tree, contact, k);
+    }
+  };
   const std::vector<Contact>& contacts = rock.body().contacts;
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
-    if (rock.fall().structures.treeOf(contacts[k]) == stem.tree)
+    ask(contacts[k], work_.slopeFirsts[member] + k);
+  }
+  for (std::size_t k = 0; k < work_.added.size(); ++k)
+  {
+    if (work_.addedTo[k].onSlope && work_.addedTo[k].of == member)
     {
-      use(contacts[k], work_.slopeFirsts[stem.member] + k);
+      ask(work_.added[k], work_.firsts.back() + k);
     }
   }
+}
+
+template <class Use>
+void StepTrees::forContacts(const Stem& stem, Use&& use) const
+{
+  this->forAll(stem.member,
+    [&](int tree, const Contact& contact, std::size_t k)
+    {
+      if (tree == stem.tree)
+      {
+        use(contact, k);
+      }
+    });
 }
 
 void StepTrees::setAbsent(const Stem& stem, bool absent)
@@ -56,20 +81,15 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
   const FallingRock& rock = this->rockOf(stem);
   const RockBody& body = rock.body();
   BlockState end = this->endOf(stem);
-  for (std::size_t i = 0; i < body.contacts.size(); ++i)
+  const auto takeBack = [&](int, const Contact& c, std::size_t k)
   {
-    const Contact& c = body.contacts[i];
-    const std::size_t k = work_.slopeFirsts[stem.member] + i;
-    if (rock.fall().structures.treeOf(c) < 0)
-    {
-      continue;
-    }
     const Vec3 impulse = h * work_.solver.force(k) * c.normal;
     const Mat3 back = end.orientation.toRotationMatrix().transpose();
     end.velocity -= impulse / body.block.mass();
     end.spin -=
       body.block.inverseInertia() * (back * (c.point - body.state.position).cross(impulse));
-  }
+  };
+  this->forAll(stem.member, takeBack);
   return end;
 }
 
@@ -87,7 +107,61 @@ bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through
         (!through || work_.solver.gap(k) < 0.0));
   };
   this->forContacts(stem, look);
-  return meets && !fall.structures.stemHolds(stem.tree, body, end, body.contacts);
+  return meets &&
+    (stem.driven > fall.structures.capacityOf(stem.tree) ||
+      !fall.structures.stemHolds(stem.tree, body, end, body.contacts));
+}
+
+StepTrees::Stem StepTrees::pushOf(std::size_t member, int tree, double h) const
+{
+  Stem stem{ member, tree, Stem::Stands::Asked };
+  double all = 0.0;
+  const auto add = [&](const Contact& c, std::size_t k)
+  {
+    const double impulse = h * work_.solver.force(k);
+    all += impulse;
+    stem.push += impulse * c.normal;
+    stem.at += impulse * c.point;
+  };
+  this->forContacts(stem, add);
+  if (!(all > 0.0))
+  {
+    return stem;
+  }
+  stem.at /= all;
+  const BlockState end = this->endOf(stem);
+  stem.away =
+    std::max(0.0, -approachOf(end, end.angularVelocity(), stem.at, stem.push.normalized()));
+  return stem;
+}
+
+double StepTrees::takenBefore(int tree) const
+{
+  double sum = world_.drivenInto(tree);
+  for (const int i : island_.members) // in the parts of this Δt, of which others have not heard
+  {
+    sum += world_.rocks[std::size_t(i)].fall().structures.notedDriven(tree);
+  }
+  return sum;
+}
+
+double StepTrees::takenOf(const Stem& stem) const
+{
+  const BlockState end = this->endOf(stem);
+  const double v = approachOf(end, end.angularVelocity(), stem.at, stem.push.normalized());
+  if (v <= this->rockOf(stem).body().restingSpeed)
+  {
+    return 0.0;
+  }
+  double energy = 0.0; // no more than there is
+  for (const int i : island_.members)
+  {
+    const FallingRock& rock = world_.rocks[std::size_t(i)];
+    energy += rock.sim.done()
+      ? 0.0
+      : rigidKineticEnergy(rock.body().block, work_.solver.end(std::size_t(rock.place)));
+  }
+  return std::min(energy, 0.5 * stem.push.norm() * v * v / (v + stem.away));
 }
 
 bool StepTrees::isKnown(std::size_t member, int tree) const
@@ -114,10 +188,24 @@ bool StepTrees::look(double h)
     return false;
   }
   bool any = false;
+  ++work_.looks;
   for (Stem& stem : work_.stems)
   {
-    if (stem.stands == Stem::Stands::Asked)
+    if (stem.stands == Stem::Stands::Yes && work_.looks < kTreeLooks)
     {
+      // Contacts that have been found since may bring more.
+      const Stem now = this->pushOf(stem.member, stem.tree, h);
+      if (now.push.norm() > (1.0 + kMorePush) * stem.push.norm())
+      {
+        stem = now;
+        this->setAbsent(stem, true);
+        any = true;
+      }
+    }
+    else if (stem.stands == Stem::Stands::Asked)
+    {
+      stem.taken = this->takenOf(stem);
+      stem.driven = stem.taken + this->takenBefore(stem.tree);
       const bool falls = this->cannotHold(stem, this->endOf(stem), true);
       stem.stands = falls ? Stem::Stands::No : Stem::Stands::Yes;
       if (!falls)
@@ -127,10 +215,11 @@ bool StepTrees::look(double h)
       }
     }
   }
-  if (++work_.looks >= kTreeLooks)
+  if (work_.looks >= kTreeLooks)
   {
     return any;
   }
+  const double fastest = world_.fastest(island_.members);
   for (std::size_t m = 0; m < island_.members.size(); ++m)
   {
     const FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
@@ -138,22 +227,24 @@ bool StepTrees::look(double h)
     {
       continue;
     }
-    const std::vector<Contact>& contacts = rock.body().contacts;
-    for (std::size_t k = 0; k < contacts.size(); ++k)
+    const auto ask = [&](int tree, const Contact&, std::size_t k)
     {
-      const int tree = rock.fall().structures.treeOf(contacts[k]);
-      if (tree < 0 || work_.solver.force(work_.slopeFirsts[m] + k) <= 0.0 || this->isKnown(m, tree))
+      if (work_.solver.force(k) <= 0.0 || this->isKnown(m, tree))
       {
-        continue;
+        return;
       }
-      const Stem stem{ m, tree, Stem::Stands::Asked };
-      if (this->cannotHold(stem, this->endWithout(stem, h), false))
+      const Stem stem = this->pushOf(m, tree, h);
+      // A light rock that the fastest strikes leaves at twice its speed.
+      const double most = stem.push.norm() * fastest;
+      if (most > kAskedShare * rock.fall().structures.capacityOf(tree) ||
+        this->cannotHold(stem, this->endWithout(stem, h), false))
       {
         work_.stems.push_back(stem);
         this->setAbsent(stem, true);
         any = true;
       }
-    }
+    };
+    this->forAll(m, ask);
   }
   return any;
 }
@@ -165,11 +256,17 @@ void StepTrees::fell(std::size_t member)
   RockBody& body = fall.body;
   for (const Stem& stem : work_.stems)
   {
-    if (stem.member != member || stem.stands != Stem::Stands::No)
+    if (stem.member != member || stem.stands == Stem::Stands::Asked)
     {
       continue;
     }
-    if (fall.structures.stemHolds(stem.tree, body, body.state, body.contactsBefore))
+    if (stem.stands == Stem::Stands::Yes)
+    {
+      fall.structures.noteDriven(stem.tree, stem.taken);
+      continue;
+    }
+    const bool driven = stem.driven > fall.structures.capacityOf(stem.tree);
+    if (!driven && fall.structures.stemHolds(stem.tree, body, body.state, body.contactsBefore))
     {
       // Others have taken it since: it holds from here on.
       for (Contact& c : body.contacts)
@@ -191,7 +288,7 @@ void StepTrees::fell(std::size_t member)
         body.energy.restitution -= all;
       }
     }
-    fall.structures.passTree(stem.tree, held, body, fall.recorder.trajectory().structures);
+    fall.structures.passTree(stem.tree, held, driven, body, fall.recorder.trajectory().structures);
     any = true;
   }
   if (any)

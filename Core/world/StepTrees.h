@@ -9,6 +9,17 @@
 /// hold the rock as it would go without it (StructuresOnWay::stemHolds, here too) is let go. If the
 /// rock drives on through it then and the tree cannot hold it, it passes, else the tree is set in
 /// again.
+///
+/// Of a rock that lies before a tree, and is driven into it, the tree does not take its energy but
+/// that of those behind. If the tree pushes with P in the step, and without it the rock would come
+/// at v, it takes
+///
+///     E = ½ P v² / (v + w),    w: the speed at which the rock leaves it,
+///
+/// which is the loss of energy in a stop, whatever stands behind the rock, and that of the rock alone
+/// where it bounces. What a tree has taken in this way adds up over a fall, as it would else hang on
+/// Δt; with more than its capacity it breaks. Of several hits in one step v is that of the last, and
+/// E an estimate.
 
 #include "world/IslandWork.h"
 
@@ -29,6 +40,10 @@ private:
   using Stem = IslandWork::Stem;
 
   const FallingRock& rockOf(const Stem& stem) const;
+  /// use(tree, contact, its number in the system): of a rock with all trees, those that were found
+  /// in the step too.
+  template <class Use>
+  void forAll(std::size_t member, Use&& use) const;
   /// use(contact, its number in the system): those of the rock with the tree.
   template <class Use>
   void forContacts(const Stem& stem, Use&& use) const;
@@ -40,6 +55,10 @@ private:
   /// let go.
   bool cannotHold(const Stem& stem, const BlockState& end, bool through) const;
   bool isKnown(std::size_t member, int tree) const;
+  /// The tree as it pushes on a rock in a step of `h`.
+  Stem pushOf(std::size_t member, int tree, double h) const;
+  double takenBefore(int tree) const;     ///< Of all that was driven into it, J.
+  double takenOf(const Stem& stem) const; ///< Of what drives the rock into it, which is let go, J.
 
   WorldState& world_;
   const Island& island_;

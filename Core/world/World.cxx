@@ -115,8 +115,12 @@ void World::shareBroken()
   for (FallingRock& rock : world_.rocks)
   {
     world_.shareBarriers(rock);
-    const std::vector<int> trees = rock.fall().structures.drainBroken().trees;
-    all.trees.insert(all.trees.end(), trees.begin(), trees.end());
+    const StructuresOnWay::Broken now = rock.fall().structures.drainBroken();
+    all.trees.insert(all.trees.end(), now.trees.begin(), now.trees.end());
+    for (const auto& [tree, energy] : now.driven)
+    {
+      world_.driven[tree] += energy;
+    }
   }
   if (all.trees.empty())
   {

@@ -72,20 +72,32 @@ double timeToBarrier(const WorldState& world, const RockBody& body, double speed
 
 } // namespace
 
-std::vector<double> WorldState::timesToBarriers(std::span<const int> members, double duration) const
+double WorldState::fastest(std::span<const int> members) const
 {
-  double fastest = 0.0;
+  double most = 0.0;
   for (const int i : members)
   {
     const RockBody& body = rocks[std::size_t(i)].body();
     const double rim = body.state.spin.norm() * body.block.radius();
-    fastest = std::max(fastest, body.done ? 0.0 : body.state.velocity.norm() + rim);
+    most = std::max(most, body.done ? 0.0 : body.state.velocity.norm() + rim);
   }
+  return most;
+}
+
+double WorldState::drivenInto(int tree) const
+{
+  const auto at = driven.find(tree);
+  return at == driven.end() ? 0.0 : at->second;
+}
+
+std::vector<double> WorldState::timesToBarriers(std::span<const int> members, double duration) const
+{
+  const double most = this->fastest(members);
   std::vector<double> times;
   for (const int i : members)
   {
     // A light rock that the fastest strikes leaves at twice its speed.
-    times.push_back(timeToBarrier(*this, rocks[std::size_t(i)].body(), 2.0 * fastest, duration));
+    times.push_back(timeToBarrier(*this, rocks[std::size_t(i)].body(), 2.0 * most, duration));
   }
   return times;
 }

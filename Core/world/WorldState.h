@@ -10,6 +10,7 @@
 #include "solve/island/SoftSolver.h"
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -105,11 +106,15 @@ struct WorldState
   RockContacts contacts; ///< Laws of the rocks on each other.
   FallingRocks rocks;
   std::vector<BarrierLoad> barrierLoads; ///< What each barrier has held so far.
-  double time = 0.0;                     ///< s
+  /// Trees that have held what others drove into them, and how much so far, J.
+  std::map<int, double> driven;
+  double time = 0.0; ///< s
 
   /// When each of these rocks meets a barrier that does not only record, if it goes on as it moves, at
   /// most `duration`; ∞ if it cannot within that time, however they strike each other. s.
   std::vector<double> timesToBarriers(std::span<const int> members, double duration) const;
+  double drivenInto(int tree) const;                  ///< Of `driven`, J.
+  double fastest(std::span<const int> members) const; ///< Speed of any of their points, m/s.
   /// Barriers that a rock has loaded or broken are so for all others, at once.
   void shareBarriers(FallingRock& rock);
 };

@@ -282,15 +282,20 @@ bool StructuresOnWay::breakTrees(
   return any;
 }
 
+double StructuresOnWay::capacityOf(int tree) const
+{
+  return obstacles_->structures().trees[std::size_t(tree)].capacity;
+}
+
 void StructuresOnWay::passTree(
-  int tree, double held, RockBody& body, std::vector<StructureEvent>& events)
+  int tree, double held, bool driven, RockBody& body, std::vector<StructureEvent>& events)
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
   const double energy = rigidKineticEnergy(body.block, body.state);
   const double height =
     body.state.position.z() - surface_->elevation(body.state.position.x(), body.state.position.y());
   const StemHit hit = hitOn(*obstacles_, tree, body.block, body.state);
-  const bool stands = energyTowards(hit.offset, energy) <= stem.capacity;
+  const bool stands = !driven && energyTowards(hit.offset, energy) <= stem.capacity;
   StructureEvent event =
     eventAt(stands ? StructureOutcome::TreePassed : StructureOutcome::TreeBroken, stem.feature,
       body.state, energy, height);
@@ -310,6 +315,12 @@ void StructuresOnWay::passTree(
   }
   body.energy.structures += held + energy - rigidKineticEnergy(body.block, body.state);
   goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
+}
+
+double StructuresOnWay::notedDriven(int tree) const
+{
+  const auto at = broke_.driven.find(tree);
+  return at == broke_.driven.end() ? 0.0 : at->second;
 }
 
 bool StructuresOnWay::isGone(int tree) const
@@ -503,10 +514,10 @@ void StructuresOnWay::load(const BarrierLoad& held)
   broke_.held.push_back({ hit_.barrier, held });
 }
 
-void StructuresOnWay::breakBarrier()
+void StructuresOnWay::breakBarrier(int barrier)
 {
-  brokenBarriers_.push_back(hit_.barrier);
-  broke_.barriers.push_back(hit_.barrier);
+  brokenBarriers_.push_back(barrier);
+  broke_.barriers.push_back(barrier);
 }
 
 } // namespace rockfall

@@ -10,6 +10,7 @@
 #include "rock/results.h"
 #include "terrain/Obstacles.h"
 
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -72,8 +73,13 @@ public:
   bool breakTrees(
     double h, std::span<const int> hit, RockBody& body, std::vector<StructureEvent>& events);
   /// One that cannot hold the rock: it breaks, or the rock slips past. What it holds of the rock's
-  /// energy (J) has been taken already.
-  void passTree(int tree, double held, RockBody& body, std::vector<StructureEvent>& events);
+  /// energy (J) has been taken already. `driven`: others drive the rock into it with more than it holds.
+  void passTree(
+    int tree, double held, bool driven, RockBody& body, std::vector<StructureEvent>& events);
+  double capacityOf(int tree) const; ///< J
+  /// It held the rock, which others have driven into it with so much (J).
+  void noteDriven(int tree, double energy) { broke_.driven[tree] += energy; }
+  double notedDriven(int tree) const; ///< Of that, since others were told, J.
 
   // Barriers
   /// What barriers have held in this fall, by number.
@@ -88,16 +94,17 @@ public:
   void passBarriers(const Way& way, double taken, double gravity, const RockBody& body,
     std::vector<StructureEvent>& events);
   const BarrierHit& hit() const { return hit_; }
-  const Barrier& barrierHit() const;  ///< The one in `hit`.
-  void load(const BarrierLoad& held); ///< It held the rock.
-  void breakBarrier();                ///< It did not.
+  const Barrier& barrierHit() const;                        ///< The one in `hit`.
+  void load(const BarrierLoad& held);                       ///< It held the rock.
+  void breakBarrier() { this->breakBarrier(hit_.barrier); } ///< It did not.
 
   // Others of the fall
-  /// Trees and barriers, by number, and what barriers have held.
+  /// Trees and barriers, by number, and what they have held.
   struct Broken
   {
     std::vector<int> trees, barriers;
     std::vector<std::pair<int, BarrierLoad>> held;
+    std::map<int, double> driven; ///< Of trees that held what others drove in, J.
 
     void addTo(std::vector<BarrierLoad>& loads) const; ///< What is held, by number of barrier.
   };
@@ -107,6 +114,8 @@ public:
   bool apply(const Broken& broken, const SurfacePatch& patch);
 
 private:
+  void breakBarrier(int barrier);
+
   bool solid_ = false;
   bool barriers_ = false;
   const Surface* surface_;

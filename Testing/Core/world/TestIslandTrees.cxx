@@ -61,6 +61,12 @@ double takenByTrees(const Trajectory& t)
   return taken;
 }
 
+bool breaksTrees(const Trajectory& t)
+{
+  return std::any_of(t.structures.begin(), t.structures.end(),
+    [](const StructureEvent& e) { return e.outcome == StructureOutcome::TreeBroken; });
+}
+
 /// What trees took is booked, and nothing else is missing.
 void expectBooked(const std::vector<Trajectory>& runs)
 {
@@ -93,7 +99,7 @@ TEST(IslandTrees, WhoIsDrivenIntoATreeGoesOnIfItCannotHold)
     EXPECT_EQ(runs[0].structures.size(), 1u);
     expectBooked(runs);
   }
-  for (const double capacity : { 5.6e4, 1e5, 1e6 })
+  for (const double capacity : { 1.3e5, 1e6 }) // all that comes, 125 kJ, and more
   {
     for (const double gap : { 0.001, 0.002, 0.005, 0.01, 0.02, 0.04 })
     {
@@ -103,6 +109,69 @@ TEST(IslandTrees, WhoIsDrivenIntoATreeGoesOnIfItCannotHold)
         EXPECT_TRUE(t.structures.empty()) << capacity << ' ' << gap;
         EXPECT_LT(t.summary.stop.x(), 49.36 - t.summary.rock) << capacity << ' ' << gap;
       }
+    }
+  }
+}
+
+// A stone lies before a stem, and a cube of 540 kJ comes behind it: the stem holds that or nothing,
+// however light the stone is.
+TEST(IslandTrees, WhoeverPushesFromBehindIsHeldUpToTheCapacity)
+{
+  for (const double timeStep : { 0.005, 0.002, 0.001 })
+  {
+    for (const double side : { 0.3, 0.4, 0.5 })
+    {
+      for (const double capacity : { 1e5, 1e6 })
+      {
+        SCOPED_TRACE(std::to_string(side) + ", " + std::to_string(timeStep));
+        Pile pile;
+        pile.ground = makeSlope(
+          41, 5.0, [](double, double) { return 0.0; }, material(0.5, 20.0));
+        Structures structures;
+        structures.trees = { stem({ 100.0, 100.0 }, capacity) };
+        pile.ground.setStructures(structures);
+        pile.parameters.timeStep = timeStep;
+        pile.parameters.endTime = 4.0;
+        const double face = 100.0 - kFlat - 0.3 - side;
+        pile.rocks = { brick(Vec3(side, side, side), Vec3(face + 0.5 * side, 100.0, 0.5 * side), 0),
+          brick(Vec3(1, 1, 1), Vec3(face - 2.5, 100.0, 0.5), 1) };
+        pile.rocks[1].velocity = Vec3(20.8, 0.0, 0.0);
+        pile.make();
+        const std::vector<Trajectory> runs = pile.fall->run();
+        const bool breaks = std::any_of(runs.begin(), runs.end(), breaksTrees);
+        EXPECT_EQ(breaks, capacity < 5e5);
+        EXPECT_EQ(runs[1].summary.stop.x() > 101.0, capacity < 5e5) << runs[1].summary.stop.x();
+      }
+    }
+  }
+}
+
+// Ten cubes of 135 kJ, one right behind the other.
+TEST(IslandTrees, ATrainOfRocksIsNoSingleRock)
+{
+  for (const double timeStep : { 0.005, 0.001 })
+  {
+    for (const double gap : { 0.001, 0.05 })
+    {
+      Pile pile;
+      pile.ground = makeSlope(
+        41, 5.0, [](double, double) { return 0.0; }, material(0.5, 0.0));
+      Structures structures;
+      structures.trees = { stem({ 100.0, 100.0 }, 1.5e5) };
+      pile.ground.setStructures(structures);
+      pile.parameters.timeStep = timeStep;
+      pile.parameters.endTime = 2.0;
+      pile.parameters.rockRestitution = 0.0;
+      pile.parameters.rockFrictionAngle = 0.0;
+      for (int k = 0; k < 10; ++k)
+      {
+        pile.rocks.push_back(
+          brick(Vec3(1, 1, 1), Vec3(99.0 - (1.0 + gap) * double(k), 100.0, 0.5), k));
+        pile.rocks.back().velocity = Vec3(10.4, 0.0, 0.0);
+      }
+      pile.make();
+      const std::vector<Trajectory> runs = pile.fall->run();
+      EXPECT_TRUE(std::any_of(runs.begin(), runs.end(), breaksTrees)) << timeStep << ' ' << gap;
     }
   }
 }
