@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -207,6 +208,9 @@ private:
       Part& piece = this->add(rock, own);
       piece.born = piece.fall.body().state.time = state.time;
       applyBroken(piece.fall.fall(), gone_);
+      // A stem past which the rock has slipped may be where the piece begins.
+      const std::span<const int> passed = parts_[number]->fall.fall().structures.goneTrees();
+      applyBroken(piece.fall.fall(), { { passed.begin(), passed.end() }, {}, {}, {} });
       this->sinkWith(parts_[number]->fall.fall(), piece.fall.fall());
       piece.fall.beginAsPiece(state.position);
       this->share(parts_.size() - 1);
