@@ -89,6 +89,9 @@ enum class StructureOutcome
   BarrierRecorded = 2, ///< Only records; nothing happened to the rock.
   TreeBroken = 3,      ///< The rock broke it, and lost the share of its capacity of its offset.
   TreePassed = 4,      ///< The same, but the tree stands and has turned the rock.
+  /// A part of the rock's outline met it, too little to be held, and nothing is taken of the rock.
+  /// Of more energy than the barrier has left it breaks for the other rocks.
+  BarrierStruck = 5,
 };
 
 /// A rock at a barrier, or at a tree that does not hold it. Trees that hold and embankments are slope:

@@ -12,7 +12,7 @@ from together import from_first_rank, make, output
 from wholefile import write_npz
 
 TABLE = "structures.csv"
-HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT, CAME = range(7)  # the first five as Outcome of port 4
+HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, STRUCK, HIT, CAME = range(8)  # to STRUCK as Outcome of port 4
 RESTED, CAUGHT, BROKEN = 0, 3, 5  # as FateCode of port 3
 MEL = (100.0, 250.0, 500.0, 1000.0, 1500.0, 2000.0, 3000.0, 4500.0)  # kJ, of the classes 0 to 7 (EAD 340059-00-0106)
 EVENT = ("Structure", "Event", "Iteration", "RockId", "Piece", "Energy", "Height", "Braking", "Useful")
@@ -90,7 +90,7 @@ class Standing:
         names = ("KineticEnergy", "HeightOverGround", "BrakingDistance", "UsefulHeight")
         for feature, outcome, *row in zip(numbers(met, "StructureId"), numbers(met, "Outcome"), *bodies(met),
                                           *(numbers(met, name) for name in names)):
-            thing = ("net", int(feature)) if outcome <= RECORDED else ("stems", 0)
+            thing = ("net", int(feature)) if outcome in (HELD, BROKE, RECORDED, STRUCK) else ("stems", 0)
             yield self.numbers[thing], int(outcome), *row
         if not self.of_cfe:
             return

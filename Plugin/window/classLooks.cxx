@@ -55,7 +55,7 @@ Meanings meaningsOf(const std::string& array)
   if (array == "Outcome")
   {
     return { { "barrier held", kBlue }, { "barrier broke", kRed }, { "recorded", kGrey },
-      { "stem broke", kOrange }, { "stem turned it", kGreen } };
+      { "stem broke", kOrange }, { "stem turned it", kGreen }, { "barrier struck", kPink } };
   }
   return {};
 }

@@ -15,28 +15,68 @@ namespace rockfall
 namespace
 {
 
-constexpr int kBrakingPieces = 8; ///< In equal times: a quarter of a sine within 2e-2 of its way.
+constexpr int kBrakingPieces = 8;   ///< In equal times: a quarter of a sine within 2e-2 of its way.
+constexpr int kBrakingPlaces = 120; ///< Looked at for room: decimetres of 12 m.
 
-void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierState& barrier)
+/// Goes on to `at` within a net, which takes what the rock loses and still falls: it is rated by the
+/// energy at its line.
+void brakeTo(Fall& fall, const BlockState& at)
 {
-  event.heldBefore = before.energy;
-  event.usefulHeight = std::max(0.0, barrier.rope - barrier.fill);
+  RockBody& body = fall.body;
+  const BlockState before = body.state;
+  body.energy.structures += rigidKineticEnergy(body.block, before) -
+    rigidKineticEnergy(body.block, at) +
+    body.block.mass() * fall.parameters.gravity * (before.position.z() - at.position.z());
+  body.state = at;
+  fall.recorder.recordBetween(body, before, at, false);
+  fall.recorder.follow(at);
 }
 
-/// A held rock comes to rest on a straight way of this length (m), as steep as the ground, with the
-/// speed v √(1 − (x/b)²) of a spring. False, and nothing done, where the way would lead off the
-/// slope or past the end time.
+/// The same with barriers on the way. Whether one of them holds the rock where it comes to it.
+bool brakePast(Fall& fall, const BlockState& at)
+{
+  RockBody& body = fall.body;
+  const BlockState before = body.state;
+  const Way way{ before, at, at.time - before.time, false };
+  fall.structures.findBarriers(way, fall.parameters.gravity, body.block.radius());
+  while (passBarriers(fall, way, 0.0))
+  {
+    const BarrierHit& hit = fall.structures.hit();
+    const Barrier& barrier = fall.structures.barrierHit();
+    const BarrierLoad load = fall.structures.loadOf(hit.barrier);
+    const BarrierState net = stateOf(barrier, load);
+    const BlockState there = between(before, at, hit.fraction);
+    const double energy = rigidKineticEnergy(body.block, there);
+    if (energy <= net.capacity)
+    {
+      brakeTo(fall, there);
+      meetBarrier(fall);
+      return true;
+    }
+    StructureEvent event = eventAt(
+      StructureOutcome::BarrierBroken, barrier.feature, there, energy, hit.heightOverGround);
+    noteLoad(event, load, net);
+    fall.recorder.trajectory().structures.push_back(event);
+    fall.structures.breakBarrier();
+  }
+  brakeTo(fall, at);
+  return false;
+}
+
+/// A held rock comes to rest on a straight way of this length b (m), as steep as the ground, with the
+/// speed v √(1 − (x/b)²) of a spring, or before ground or an embankment higher than its centre.
+/// Barriers on the way are met. False, and nothing done, where the way would lead off the slope or
+/// past the end time.
 bool brakeBehindNet(Fall& fall, double distance)
 {
   RockBody& body = fall.body;
   const BlockState start = body.state;
   const double speed = start.velocity.norm(), across = start.velocity.head<2>().norm();
-  const double duration = 0.5 * std::numbers::pi * distance / speed;
-  if (!(distance > 0.0) || !(across > 0.0) || !(start.time + duration <= fall.parameters.endTime))
+  const double quarter = 0.5 * std::numbers::pi * distance / speed;
+  if (!(distance > 0.0) || !(across > 0.0) || !(start.time + quarter <= fall.parameters.endTime))
   {
     return false;
   }
-  // As the ground goes down or up on a level way of that length.
   const Eigen::Vector2d level = start.velocity.head<2>() / across;
   const auto ground = [&](double way)
   {
@@ -44,30 +84,41 @@ bool brakeBehindNet(Fall& fall, double distance)
     return std::max(fall.surface.elevation(place.x(), place.y()),
       fall.structures.obstacles().embankmentTop(place.x(), place.y()));
   };
-  const double rise = ground(distance) - ground(0.0);
-  if (std::isnan(rise))
+  if (std::isnan(ground(distance)))
   {
     return false;
   }
-  const Vec3 along = Vec3(level.x(), level.y(), rise / distance).normalized();
+  const double foot = ground(0.0), centre = start.position.z() - foot;
+  double room = 0.0, highest = foot;
+  for (int k = 1; k <= kBrakingPlaces; ++k)
+  {
+    const double next = distance * k / kBrakingPlaces, front = ground(next + body.block.radius());
+    // A step up, not ground that rises.
+    if (front > highest + centre)
+    {
+      break;
+    }
+    highest = std::isnan(front) ? highest : front;
+    room = next;
+  }
+  const double rise = room > 0.0 ? ground(room) - foot : 0.0;
+  const Vec3 along = Vec3(level.x(), level.y(), room > 0.0 ? rise / room : 0.0).normalized();
+  const double last = std::asin(room / distance); // of the quarter of a sine
   BlockState at = start;
-  at.velocity = speed * along;
+  body.state.velocity = speed * along;
+  body.springEnergyBefore = 0.0;
   for (int k = 1; k <= kBrakingPieces; ++k)
   {
-    const BlockState before = at;
-    const double phase = 0.5 * std::numbers::pi * k / kBrakingPieces;
+    const double phase = last * k / kBrakingPieces;
     const double left = k < kBrakingPieces ? std::cos(phase) : 0.0;
-    at.time = start.time + duration * k / kBrakingPieces;
+    at.time = start.time + distance / speed * phase;
     at.position = start.position + distance * std::sin(phase) * along;
     at.velocity = left * speed * along;
     at.spin = left * start.spin;
-    // What the rock still falls is taken, too; a net is rated by the energy at its line.
-    body.energy.structures += rigidKineticEnergy(body.block, before) -
-      rigidKineticEnergy(body.block, at) +
-      body.block.mass() * fall.parameters.gravity * (before.position.z() - at.position.z());
-    body.state = at;
-    fall.recorder.recordBetween(body, before, at, false);
-    fall.recorder.follow(at);
+    if (brakePast(fall, at))
+    {
+      break;
+    }
   }
   return true;
 }

@@ -38,6 +38,12 @@ StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Blo
   return event;
 }
 
+void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierState& barrier)
+{
+  event.heldBefore = before.energy;
+  event.usefulHeight = std::max(0.0, barrier.rope - barrier.fill);
+}
+
 namespace
 {
 
@@ -275,7 +281,7 @@ bool StructuresOnWay::breakTrees(
     {
       held += this->treeOf(other) == tree ? other.springEnergy() : 0.0;
     }
-    this->passTree(tree, held, body, events);
+    this->passTree(tree, held, false, body, events);
     body.springEnergy = std::max(0.0, body.springEnergy - held);
     any = true;
   }
@@ -344,7 +350,7 @@ StructuresOnWay::Broken StructuresOnWay::drainBroken()
 
 StructuresOnWay::Broken StructuresOnWay::drainBarriers()
 {
-  return { {}, std::exchange(broke_.barriers, {}), std::exchange(broke_.held, {}) };
+  return { {}, std::exchange(broke_.barriers, {}), std::exchange(broke_.held, {}), {} };
 }
 
 bool StructuresOnWay::apply(const Broken& broken, const SurfacePatch& patch)
@@ -388,7 +394,8 @@ void StructuresOnWay::findBarriers(const Way& way, double gravity, double radius
       const Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
       const auto side = [&](const Vec3& x) { return normal.dot(x.head<2>() - piece.from); };
       const double before = side(p), after = side(q);
-      if ((before < 0.0) == (after < 0.0))
+      const bool released = way.from.time == 0.0 && std::abs(before) < kSamePlace; // on the line
+      if (released || (before < 0.0) == (after < 0.0))
       {
         return;
       }
@@ -479,23 +486,36 @@ void StructuresOnWay::passBarriers(const Way& way, double taken, double gravity,
     const double foot = std::max(surface_->elevation(at.position.x(), at.position.y()),
       obstacles_->embankmentTop(at.position.x(), at.position.y()));
     const double height = at.position.z() - foot;
-    if (!holdsOutline(*obstacles_, piece, stateOf(barrier, this->loadOf(number)), brokenBarriers_,
-          body.block, at, height))
+    const BarrierState state = stateOf(barrier, this->loadOf(number));
+    const BarrierMeets meets =
+      meetsOutline(*obstacles_, piece, state, brokenBarriers_, body.block, at, height);
+    if (meets == BarrierMeets::Nothing)
     {
       continue;
     }
     // Energy that the ground holds in a touch it gives back in a moment.
     const double stored =
       way.flight ? 0.0 : (1.0 - fraction) * body.springEnergyBefore + fraction * body.springEnergy;
-    if (!barrier.records)
+    if (!barrier.records && meets == BarrierMeets::Holds)
     {
       hit_ = { number, fraction, height, stored };
       return;
     }
     const double came = rigidKineticEnergy(body.block, at);
     slowDown(at, came, std::min(taken, came));
-    events.push_back(eventAt(StructureOutcome::BarrierRecorded, barrier.feature, at,
-      rigidKineticEnergy(body.block, at) + stored, height));
+    const double energy = rigidKineticEnergy(body.block, at) + stored;
+    StructureEvent event =
+      eventAt(barrier.records ? StructureOutcome::BarrierRecorded : StructureOutcome::BarrierStruck,
+        barrier.feature, at, energy, height);
+    if (!barrier.records)
+    {
+      noteLoad(event, this->loadOf(number), state);
+      if (energy > state.capacity)
+      {
+        this->breakBarrier(number); // for others: nothing is taken of the rock
+      }
+    }
+    events.push_back(event);
   }
 }
 

@@ -46,6 +46,8 @@ void slowDown(BlockState& state, double energy, double taken);
 /// over the slope (m); nothing is taken of it.
 StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
   double energy, double height);
+/// Notes what a barrier is like before the rock comes.
+void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierState& barrier);
 
 class StructuresOnWay
 {

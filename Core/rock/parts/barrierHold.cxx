@@ -52,7 +52,7 @@ Outline outlineAlong(const Vec2& line, const Block& block, const BlockState& at)
 
 } // namespace
 
-bool holdsOutline(const Obstacles& obstacles, int piece, const BarrierState& state,
+BarrierMeets meetsOutline(const Obstacles& obstacles, int piece, const BarrierState& state,
   std::span<const int> broken, const Block& block, const BlockState& at, double height)
 {
   const Obstacles::Piece& own = obstacles.barrierPieces()[std::size_t(piece)];
@@ -62,9 +62,9 @@ bool holdsOutline(const Obstacles& obstacles, int piece, const BarrierState& sta
   const Outline o = outlineAlong(line, block, at);
   const double share = barrier.overhang;
   const double lifted = std::max(height, state.fill - o.bottom);
-  if (!(lifted + o.top - share * (o.top - o.bottom) <= state.rope))
+  if (!(lifted + o.bottom < state.rope))
   {
-    return false;
+    return BarrierMeets::Nothing;
   }
   const double length = (own.to - own.from).norm(), end = kPieceEnd * length;
   const double centre = line.dot(at.position.head<2>() - own.from);
@@ -91,11 +91,18 @@ bool holdsOutline(const Obstacles& obstacles, int piece, const BarrierState& sta
   };
   if (!onPiece(centre) && othersHold(centre))
   {
-    return false; // it meets that one
+    return BarrierMeets::Nothing; // it meets that one
+  }
+  if (centre + o.right < -end || centre + o.left > length + end)
+  {
+    return BarrierMeets::Nothing;
   }
   const double mayStandOut = share * (o.right - o.left);
   const auto isHeld = [&](double place) { return onPiece(place) || othersHold(place); };
-  return isHeld(centre + o.left + mayStandOut) && isHeld(centre + o.right - mayStandOut);
+  const bool under = lifted + o.top - share * (o.top - o.bottom) <= state.rope;
+  return under && isHeld(centre + o.left + mayStandOut) && isHeld(centre + o.right - mayStandOut)
+    ? BarrierMeets::Holds
+    : BarrierMeets::Strikes;
 }
 
 } // namespace rockfall
