@@ -135,31 +135,36 @@ StepTrees::Stem StepTrees::pushOf(std::size_t member, int tree, double h) const
   return stem;
 }
 
-double StepTrees::takenBefore(int tree) const
+double StepTrees::takenByAll(int tree) const
 {
   double sum = world_.drivenInto(tree);
   for (const int i : island_.members) // in the parts of this Δt, of which others have not heard
   {
     sum += world_.rocks[std::size_t(i)].fall().structures.notedDriven(tree);
   }
+  for (const Stem& stem : work_.stems)
+  {
+    sum += stem.tree == tree ? stem.taken : 0.0;
+  }
   return sum;
 }
 
-double StepTrees::takenOf(const Stem& stem) const
+double StepTrees::takenOf(const Stem& stem, double h) const
 {
   const BlockState end = this->endOf(stem);
   const double v = approachOf(end, end.angularVelocity(), stem.at, stem.push.normalized());
-  if (v <= this->rockOf(stem).body().restingSpeed)
+  // What rests or creeps gains as much within a step.
+  const double slow = 2.0 * h * world_.parameters.gravity;
+  if (v <= std::max(slow, this->rockOf(stem).body().restingSpeed))
   {
     return 0.0;
   }
-  double energy = 0.0; // no more than there is
+  // No more than came into the step.
+  double energy = 0.0;
   for (const int i : island_.members)
   {
-    const FallingRock& rock = world_.rocks[std::size_t(i)];
-    energy += rock.sim.done()
-      ? 0.0
-      : rigidKineticEnergy(rock.body().block, work_.solver.end(std::size_t(rock.place)));
+    const RockBody& body = world_.rocks[std::size_t(i)].body();
+    energy += body.done ? 0.0 : rigidKineticEnergy(body.block, body.state);
   }
   return std::min(energy, 0.5 * stem.push.norm() * v * v / (v + stem.away));
 }
@@ -191,6 +196,10 @@ bool StepTrees::look(double h)
   ++work_.looks;
   for (Stem& stem : work_.stems)
   {
+    stem.taken = stem.stands == Stem::Stands::Asked ? this->takenOf(stem, h) : stem.taken;
+  }
+  for (Stem& stem : work_.stems)
+  {
     if (stem.stands == Stem::Stands::Yes && work_.looks < kTreeLooks)
     {
       // Contacts that have been found since may bring more.
@@ -204,8 +213,7 @@ bool StepTrees::look(double h)
     }
     else if (stem.stands == Stem::Stands::Asked)
     {
-      stem.taken = this->takenOf(stem);
-      stem.driven = stem.taken + this->takenBefore(stem.tree);
+      stem.driven = this->takenByAll(stem.tree);
       const bool falls = this->cannotHold(stem, this->endOf(stem), true);
       stem.stands = falls ? Stem::Stands::No : Stem::Stands::Yes;
       if (!falls)
@@ -249,6 +257,13 @@ bool StepTrees::look(double h)
   return any;
 }
 
+bool StepTrees::isOfAnother(const Stem& stem) const
+{
+  const auto falls = [&](const Stem& s)
+  { return s.tree == stem.tree && s.stands == Stem::Stands::No; };
+  return std::find_if(work_.stems.begin(), work_.stems.end(), falls)->member != stem.member;
+}
+
 void StepTrees::fell(std::size_t member)
 {
   bool any = false;
@@ -266,6 +281,11 @@ void StepTrees::fell(std::size_t member)
       continue;
     }
     const bool driven = stem.driven > fall.structures.capacityOf(stem.tree);
+    if (driven && this->isOfAnother(stem))
+    {
+      applyBroken(fall, { { stem.tree }, {}, {}, {} });
+      continue;
+    }
     if (!driven && fall.structures.stemHolds(stem.tree, body, body.state, body.contactsBefore))
     {
       // Others have taken it since: it holds from here on.

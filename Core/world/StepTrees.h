@@ -57,8 +57,10 @@ private:
   bool isKnown(std::size_t member, int tree) const;
   /// The tree as it pushes on a rock in a step of `h`.
   Stem pushOf(std::size_t member, int tree, double h) const;
-  double takenBefore(int tree) const;     ///< Of all that was driven into it, J.
-  double takenOf(const Stem& stem) const; ///< Of what drives the rock into it, which is let go, J.
+  double takenByAll(int tree) const;        ///< Of all that was driven into it so far, J.
+  bool isOfAnother(const Stem& stem) const; ///< Whether a rock before this one breaks it.
+  double takenOf(
+    const Stem& stem, double h) const; ///< Of what drives the rock into it, which is let go, J.
 
   WorldState& world_;
   const Island& island_;

@@ -32,8 +32,9 @@ void brakeTo(Fall& fall, const BlockState& at)
   fall.recorder.follow(at);
 }
 
-/// The same with barriers on the way. Whether one of them holds the rock where it comes to it.
-bool brakePast(Fall& fall, const BlockState& at)
+/// The same with barriers on the way but for the net itself, `own`. Whether one of them holds the rock
+/// where it comes to it.
+bool brakePast(Fall& fall, const BlockState& at, int own)
 {
   RockBody& body = fall.body;
   const BlockState before = body.state;
@@ -42,6 +43,10 @@ bool brakePast(Fall& fall, const BlockState& at)
   while (passBarriers(fall, way, 0.0))
   {
     const BarrierHit& hit = fall.structures.hit();
+    if (hit.barrier == own)
+    {
+      continue;
+    }
     const Barrier& barrier = fall.structures.barrierHit();
     const BarrierLoad load = fall.structures.loadOf(hit.barrier);
     const BarrierState net = stateOf(barrier, load);
@@ -70,6 +75,7 @@ bool brakePast(Fall& fall, const BlockState& at)
 bool brakeBehindNet(Fall& fall, double distance)
 {
   RockBody& body = fall.body;
+  const int own = fall.structures.hit().barrier;
   const BlockState start = body.state;
   const double speed = start.velocity.norm(), across = start.velocity.head<2>().norm();
   const double quarter = 0.5 * std::numbers::pi * distance / speed;
@@ -78,30 +84,34 @@ bool brakeBehindNet(Fall& fall, double distance)
     return false;
   }
   const Eigen::Vector2d level = start.velocity.head<2>() / across;
+  const auto slope = [&](double way)
+  {
+    const Eigen::Vector2d place = start.position.head<2>() + way * level;
+    return fall.surface.elevation(place.x(), place.y());
+  };
   const auto ground = [&](double way)
   {
     const Eigen::Vector2d place = start.position.head<2>() + way * level;
-    return std::max(fall.surface.elevation(place.x(), place.y()),
-      fall.structures.obstacles().embankmentTop(place.x(), place.y()));
+    return std::max(slope(way), fall.structures.obstacles().embankmentTop(place.x(), place.y()));
   };
   if (std::isnan(ground(distance)))
   {
     return false;
   }
-  const double foot = ground(0.0), centre = start.position.z() - foot;
-  double room = 0.0, highest = foot;
+  // Down with all ground, up with the slope alone.
+  const double centre = start.position.z() - ground(0.0);
+  double room = 0.0, foot = ground(0.0), rise = 0.0;
   for (int k = 1; k <= kBrakingPlaces; ++k)
   {
-    const double next = distance * k / kBrakingPlaces, front = ground(next + body.block.radius());
-    // A step up, not ground that rises.
-    if (front > highest + centre)
+    const double next = distance * k / kBrakingPlaces;
+    foot = std::min(ground(next), foot + std::max(0.0, slope(next) - slope(room)));
+    if (!(ground(next + body.block.radius()) <= foot + centre))
     {
       break;
     }
-    highest = std::isnan(front) ? highest : front;
     room = next;
+    rise = foot - ground(0.0);
   }
-  const double rise = room > 0.0 ? ground(room) - foot : 0.0;
   const Vec3 along = Vec3(level.x(), level.y(), room > 0.0 ? rise / room : 0.0).normalized();
   const double last = std::asin(room / distance); // of the quarter of a sine
   BlockState at = start;
@@ -115,7 +125,7 @@ bool brakeBehindNet(Fall& fall, double distance)
     at.position = start.position + distance * std::sin(phase) * along;
     at.velocity = left * speed * along;
     at.spin = left * start.spin;
-    if (brakePast(fall, at))
+    if (brakePast(fall, at, own))
     {
       break;
     }

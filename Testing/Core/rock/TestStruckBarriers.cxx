@@ -154,14 +154,36 @@ TEST(StruckBarriers, ABrakingWayMeetsWhatStandsOnIt)
   e.points = { { 63.0, 20.0 }, { 63.0, 80.0 } };
   e.height = 8.0;
   e.crestWidth = 1.0;
-  e.mountainSlope = e.valleySlope = 0.0;
-  wall.embankments = { e };
-  const Trajectory stopped = fall(wall);
-  ASSERT_EQ(stopped.structures.size(), 1u);
-  EXPECT_EQ(stopped.structures[0].brakingDistance, free.structures[0].brakingDistance);
-  EXPECT_GT(stopped.summary.stop.x(), 60.5);
-  EXPECT_LT(stopped.summary.stop.x(), 62.5); // the wall's face
-  EXPECT_LT(std::abs(stopped.summary.energy.numerical), 1e-9 * energy);
+  for (const double side : { 0.0, 0.05, 0.2 })
+  {
+    e.mountainSlope = e.valleySlope = side;
+    wall.embankments = { e };
+    const Trajectory stopped = fall(wall);
+    ASSERT_EQ(stopped.structures.size(), 1u);
+    EXPECT_EQ(stopped.structures[0].brakingDistance, free.structures[0].brakingDistance);
+    EXPECT_GT(stopped.summary.stop.x(), 60.2);
+    EXPECT_LT(stopped.summary.stop.x(), 62.5 - 0.5); // half a cube before the crest
+    EXPECT_LT(std::abs(stopped.summary.energy.numerical), 1e-9 * energy);
+  }
+}
+
+TEST(StruckBarriers, ABrakingWayEndsBeforeAHole)
+{
+  Structures s;
+  s.barriers = { netAt(60.0, 1, 6.0, 1e6) };
+  s.barriers[0].braking = 6.0;
+  Terrain terrain = makeSlope(
+    201, 0.5,
+    [](double x, double) { return x > 62.2 && x < 63.8 ? std::nan("")
+                             : x < 63.0                ? 100.0
+                                                       : 103.0; },
+    material(0.5, 20.0));
+  terrain.setStructures(s);
+  const Trajectory t = simulate(terrain, box(Vec3(1, 1, 1), 3.0), shortRun(3.0));
+  EXPECT_EQ(t.summary.fate, Fate::Caught);
+  EXPECT_GE(t.summary.stop.x(), 60.0);
+  EXPECT_LT(t.summary.stop.x(), 62.2);
+  EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-6 * t.structures[0].kineticEnergy);
 }
 
 // Drawn from either side, and with the rock on either side of the line by rounding.

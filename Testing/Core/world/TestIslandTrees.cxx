@@ -176,6 +176,74 @@ TEST(IslandTrees, ATrainOfRocksIsNoSingleRock)
   }
 }
 
+// Two cubes of 70 kJ on top of each other, the upper one a little behind.
+TEST(IslandTrees, HitsOfTwoRocksAtOnceAddUp)
+{
+  for (const double lag : { 0.0, 0.001, 0.03 })
+  {
+    for (const double capacity : { 1e5, 2e5 })
+    {
+      Pile pile;
+      pile.ground = makeSlope(
+        41, 5.0, [](double, double) { return 0.0; }, material(0.0, 0.0));
+      Structures structures;
+      structures.trees = { stem({ 100.0, 100.0 }, capacity) };
+      pile.ground.setStructures(structures);
+      pile.parameters.endTime = 1.0;
+      pile.parameters.rockRestitution = pile.parameters.rockFrictionAngle = 0.0;
+      pile.rocks = { brick(Vec3(1, 1, 1), Vec3(98.6, 100.0, 0.5001), 0),
+        brick(Vec3(1, 1, 1), Vec3(98.6 - lag, 100.0, 1.5003), 1) };
+      for (Rock& rock : pile.rocks)
+      {
+        rock.velocity = Vec3(7.5, 0.0, 0.0);
+      }
+      pile.make();
+      const std::vector<Trajectory> runs = pile.fall->run();
+      double taken = 0.0;
+      for (const Trajectory& t : runs)
+      {
+        for (const StructureEvent& e : t.structures)
+        {
+          taken += e.energyTaken;
+        }
+      }
+      EXPECT_EQ(std::any_of(runs.begin(), runs.end(), breaksTrees), capacity < 1.5e5) << lag;
+      EXPECT_LE(taken, capacity) << lag;
+    }
+  }
+}
+
+// Cubes of 10 m³ lie on 35° behind a stone that a stem of 30 kJ holds, and never sleep.
+TEST(IslandTrees, ALoadAtRestAddsNothing)
+{
+  const double slope = radians(35.0), side = 0.2, large = std::cbrt(10.0);
+  const Quat tilt(Eigen::AngleAxisd(slope, Vec3::UnitY()));
+  Pile pile;
+  pile.ground = makePlane(61, 300.0, slope, 0.0, material(0.3, 15.0));
+  Structures structures;
+  structures.trees = { stem({ 150.0, 150.0 }, 3e4) };
+  pile.ground.setStructures(structures);
+  pile.parameters.timeStep = 0.01;
+  pile.parameters.endTime = 6.0;
+  const double top = pile.ground.elevation(150.0, 150.0);
+  double at = -(kFlat / std::cos(slope) + side * std::tan(slope) + 1e-5); // along the slope
+  for (int k = 0; k < 5; ++k)
+  {
+    const double edge = k == 0 ? side : large;
+    Rock rock = brick(Vec3(edge, edge, edge), Vec3::Zero(), k);
+    rock.orientation = tilt;
+    rock.position = Vec3(150.0, 150.0, top) + tilt * Vec3(at - 0.5 * edge, 0.0, 0.5 * edge + 1e-5);
+    pile.rocks.push_back(rock);
+    at -= edge + 1e-5;
+  }
+  pile.make();
+  for (const Trajectory& t : pile.fall->run())
+  {
+    EXPECT_TRUE(t.structures.empty());
+    EXPECT_LT((t.summary.stop - t.summary.start).norm(), 0.1);
+  }
+}
+
 TEST(IslandTrees, WhatStandsBehindIsMetInTheSameStep)
 {
   // Four stems side by side, each a little farther than the one before.
