@@ -118,8 +118,9 @@ inline constexpr double kStillTime = 0.5;
 /// ever. Longer: piles that never sleep.
 inline constexpr double kLingerTime = 3.0;
 inline constexpr double kLingerWay = 0.03;
-/// But not what goes away and faster: less than this share of its way back, and in the second half
-/// of the time by so much further than in the first. Lower: creeping piles stay awake.
+/// A rock that goes away faster and faster stays awake: it comes back by less than this share of its
+/// way, and goes by so much further in the second half of the time than in the first. Lower:
+/// creeping piles stay awake.
 inline constexpr double kComesBack = 0.01;
 inline constexpr double kFaster = 0.1;
 /// Rotation counts against that from this share of √(g r) at the rim on. Rock that breaks at 50 MPa

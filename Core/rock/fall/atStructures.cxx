@@ -18,6 +18,25 @@ namespace
 constexpr int kBrakingPieces = 8;   ///< In equal times: a quarter of a sine within 2e-2 of its way.
 constexpr int kBrakingPlaces = 120; ///< Looked at for room: decimetres of 12 m.
 
+/// What is left of the barrier that the rock hits.
+BarrierState barrierNow(const Fall& fall)
+{
+  return stateOf(
+    fall.structures.barrierHit(), fall.structures.loadOf(fall.structures.hit().barrier));
+}
+
+/// The barrier that the rock hits does not hold it, where it is `at` with this energy, J.
+void breakBarrier(Fall& fall, const BlockState& at, double energy, double taken)
+{
+  const BarrierHit& hit = fall.structures.hit();
+  StructureEvent event = eventAt(StructureOutcome::BarrierBroken,
+    fall.structures.barrierHit().feature, at, energy, hit.heightOverGround);
+  noteLoad(event, fall.structures.loadOf(hit.barrier), barrierNow(fall));
+  event.energyTaken = taken;
+  fall.recorder.trajectory().structures.push_back(event);
+  fall.structures.breakBarrier();
+}
+
 /// Goes on to `at` within a net, which takes what the rock loses and still falls: it is rated by the
 /// energy at its line.
 void brakeTo(Fall& fall, const BlockState& at)
@@ -32,7 +51,7 @@ void brakeTo(Fall& fall, const BlockState& at)
   fall.recorder.follow(at);
 }
 
-/// The same with barriers on the way but for the net itself, `own`. Whether one of them holds the rock
+/// Braking with barriers on the way but for the net itself, `own`. Whether one of them holds the rock
 /// where it comes to it.
 bool brakePast(Fall& fall, const BlockState& at, int own)
 {
@@ -47,22 +66,15 @@ bool brakePast(Fall& fall, const BlockState& at, int own)
     {
       continue;
     }
-    const Barrier& barrier = fall.structures.barrierHit();
-    const BarrierLoad load = fall.structures.loadOf(hit.barrier);
-    const BarrierState net = stateOf(barrier, load);
     const BlockState there = between(before, at, hit.fraction);
     const double energy = rigidKineticEnergy(body.block, there);
-    if (energy <= net.capacity)
+    if (energy <= barrierNow(fall).capacity)
     {
       brakeTo(fall, there);
       meetBarrier(fall);
       return true;
     }
-    StructureEvent event = eventAt(
-      StructureOutcome::BarrierBroken, barrier.feature, there, energy, hit.heightOverGround);
-    noteLoad(event, load, net);
-    fall.recorder.trajectory().structures.push_back(event);
-    fall.structures.breakBarrier();
+    breakBarrier(fall, there, energy, 0.0);
   }
   brakeTo(fall, at);
   return false;
@@ -215,10 +227,8 @@ bool passBarriers(Fall& fall, const Way& way, double taken)
 
 bool holdsAtBarrier(const Fall& fall)
 {
-  const BarrierHit& hit = fall.structures.hit();
-  const BarrierState net =
-    stateOf(fall.structures.barrierHit(), fall.structures.loadOf(hit.barrier));
-  return rigidKineticEnergy(fall.body.block, fall.body.state) + hit.stored <= net.capacity;
+  return rigidKineticEnergy(fall.body.block, fall.body.state) + fall.structures.hit().stored <=
+    barrierNow(fall).capacity;
 }
 
 void meetBarrier(Fall& fall)
@@ -228,7 +238,7 @@ void meetBarrier(Fall& fall)
   const Barrier& barrier = fall.structures.barrierHit();
   const double kinetic = rigidKineticEnergy(body.block, body.state), energy = kinetic + hit.stored;
   const BarrierLoad load = fall.structures.loadOf(hit.barrier);
-  const BarrierState net = stateOf(barrier, load);
+  const BarrierState net = barrierNow(fall);
   const bool holds = holdsAtBarrier(fall);
   const double taken = holds ? energy : barrier.absorbs ? net.capacity : 0.0;
   StructureEvent event =
@@ -275,9 +285,8 @@ double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool to
   const double came = rigidKineticEnergy(body.block, at);
   slowDown(at, came, std::min(taken, came));
   const double energy = rigidKineticEnergy(body.block, at) + hit.stored;
-  const BarrierLoad load = fall.structures.loadOf(hit.barrier);
-  const BarrierState net = stateOf(barrier, load);
-  if (energy <= net.capacity)
+  const double capacity = barrierNow(fall).capacity;
+  if (energy <= capacity)
   {
     // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.
     body.energy.structures += kineticEnergy(body.block, body.state) -
@@ -291,16 +300,12 @@ double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool to
     meetBarrier(fall);
     return 0.0;
   }
-  StructureEvent event =
-    eventAt(StructureOutcome::BarrierBroken, barrier.feature, at, energy, hit.heightOverGround);
   const double left = rigidKineticEnergy(body.block, body.state);
-  slowDown(body.state, left, barrier.absorbs ? std::min(net.capacity, left) : 0.0);
-  noteLoad(event, load, net);
-  event.energyTaken = left - rigidKineticEnergy(body.block, body.state);
-  body.energy.structures += event.energyTaken;
-  fall.recorder.trajectory().structures.push_back(event);
-  fall.structures.breakBarrier();
-  return event.energyTaken;
+  slowDown(body.state, left, barrier.absorbs ? std::min(capacity, left) : 0.0);
+  const double gone = left - rigidKineticEnergy(body.block, body.state);
+  body.energy.structures += gone;
+  breakBarrier(fall, at, energy, gone);
+  return gone;
 }
 
 } // namespace rockfall

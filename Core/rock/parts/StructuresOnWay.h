@@ -79,7 +79,7 @@ public:
   void passTree(
     int tree, double held, bool driven, RockBody& body, std::vector<StructureEvent>& events);
   double capacityOf(int tree) const; ///< J
-  /// It held the rock, which others have driven into it with so much (J).
+  /// Notes that a tree held the rock, which others have driven into it with so much (J).
   void noteDriven(int tree, double energy) { broke_.driven[tree] += energy; }
   double notedDriven(int tree) const; ///< Of that, since others were told, J.
 
