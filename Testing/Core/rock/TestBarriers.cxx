@@ -1,6 +1,7 @@
 // Barriers catch exactly what is below their height and capacity, whatever Δt and output interval.
 
 #include "form.h"
+#include "rigidFor.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"
 
@@ -43,14 +44,6 @@ Rock thrown(double up, double speed)
   return rock;
 }
 
-SimulationParameters rigidParameters(double endTime)
-{
-  SimulationParameters p;
-  p.endTime = endTime;
-  p.rigid = true;
-  return p;
-}
-
 } // namespace
 
 TEST(Barriers, CatchWhatIsBelowHeightAndCapacity)
@@ -64,7 +57,7 @@ TEST(Barriers, CatchWhatIsBelowHeightAndCapacity)
     for (const double capacity : { energy * (1.0 - 1e-9), energy * (1.0 + 1e-9) })
     {
       const Trajectory t =
-        simulate(withBarrier(height, capacity), thrown(6.0, speed), rigidParameters(0.6));
+        simulate(withBarrier(height, capacity), thrown(6.0, speed), rigidFor(0.6));
       if (height < top)
       {
         ASSERT_EQ(t.structures.size(), 1u);
@@ -103,8 +96,8 @@ TEST(Barriers, TakeTheirCapacityFromWhatBreaksThem)
   const double speed = 20.0, capacity = 3e5;
   for (const bool absorbs : { true, false })
   {
-    const Trajectory t = simulate(
-      withBarrier(8.0, capacity, false, absorbs), thrown(6.0, speed), rigidParameters(0.7));
+    const Trajectory t =
+      simulate(withBarrier(8.0, capacity, false, absorbs), thrown(6.0, speed), rigidFor(0.7));
     ASSERT_EQ(t.structures.size(), 1u);
     const double energy = t.structures[0].kineticEnergy;
     const double left = absorbs ? std::sqrt(1.0 - capacity / energy) : 1.0;
@@ -123,7 +116,7 @@ TEST(Barriers, BrakeOnAWayBehindTheLine)
     Structures s = withBarrier(30.0, capacity).obstacles()->structures();
     s.barriers[0].braking = way;
     terrain.setStructures(s);
-    return simulate(terrain, thrown(6.0, speed), rigidParameters(endTime));
+    return simulate(terrain, thrown(6.0, speed), rigidFor(endTime));
   };
   const Trajectory bare = fall(0.0, 5.0), held = fall(braking, 5.0);
   ASSERT_EQ(held.structures.size(), 1u);
@@ -165,10 +158,9 @@ TEST(Barriers, BrakeOnAWayBehindTheLine)
 
 TEST(Barriers, RecordWithoutAnyEffect)
 {
-  Trajectory bare = simulate(
-    makePlane(21, 100.0, 0.0, 0.0, material(0.5, 20.0)), thrown(6.0, 15.0), rigidParameters(8.0));
-  const Trajectory t =
-    simulate(withBarrier(8.0, 0.0, true), thrown(6.0, 15.0), rigidParameters(8.0));
+  Trajectory bare =
+    simulate(makePlane(21, 100.0, 0.0, 0.0, material(0.5, 20.0)), thrown(6.0, 15.0), rigidFor(8.0));
+  const Trajectory t = simulate(withBarrier(8.0, 0.0, true), thrown(6.0, 15.0), rigidFor(8.0));
   ASSERT_EQ(t.structures.size(), 1u);
   EXPECT_EQ(t.structures[0].outcome, StructureOutcome::BarrierRecorded);
   EXPECT_EQ(t.structures[0].energyTaken, 0.0);
@@ -194,7 +186,7 @@ TEST(Barriers, CountWhatATouchHolds)
     s.barriers.push_back(b);
   }
   terrain.setStructures(s);
-  const Trajectory t = simulate(terrain, thrown(2.0, 20.0), rigidParameters(0.6));
+  const Trajectory t = simulate(terrain, thrown(2.0, 20.0), rigidFor(0.6));
   ASSERT_EQ(t.structures.size(), 300u);
   const double before = t.structures.front().kineticEnergy;
   const double after = t.structures.back().kineticEnergy;
@@ -214,7 +206,7 @@ TEST(Barriers, WhatTheyCatchInTheMiddleOfAnImpactHasHadOne)
   {
     Rock rock = thrown(0.5 + fallen, speed);
     rock.position.x() -= before * speed; // the barrier comes that much later than the ground
-    const Trajectory t = simulate(withBarrier(8.0, 1e9), rock, rigidParameters(1.0));
+    const Trajectory t = simulate(withBarrier(8.0, 1e9), rock, rigidFor(1.0));
     EXPECT_EQ(t.summary.fate, Fate::Caught);
     EXPECT_EQ(t.summary.impacts, 1) << before;
     ASSERT_EQ(t.impacts.size(), 1u) << before;
@@ -228,7 +220,7 @@ TEST(Barriers, CatchAtOnceWhatStartsBeforeThem)
   // A path is a line all the same.
   Rock rock = thrown(2.0, 5.0);
   rock.position.x() = 60.0 - 2e-6;
-  const Trajectory t = simulate(withBarrier(5.0, 1e9), rock, rigidParameters(1.0));
+  const Trajectory t = simulate(withBarrier(5.0, 1e9), rock, rigidFor(1.0));
   EXPECT_EQ(t.summary.fate, Fate::Caught);
   ASSERT_EQ(t.samples.size(), 2u);
   EXPECT_GT(t.samples[1].time, t.samples[0].time);
@@ -242,7 +234,7 @@ TEST(Barriers, CatchWhatSlides)
   {
     for (const double interval : { 0.05, 0.5 })
     {
-      SimulationParameters p = rigidParameters(10.0);
+      SimulationParameters p = rigidFor(10.0);
       p.timeStep = dt;
       p.outputInterval = interval;
       const double speed = 12.0;
@@ -280,7 +272,7 @@ bool hold(const std::vector<Barrier>& nets, const Rock& rock, const Embankment* 
   bool held[2];
   for (const bool together : { false, true })
   {
-    SimulationParameters p = rigidParameters(0.6);
+    SimulationParameters p = rigidFor(0.6);
     p.rockRockContact = together;
     TrajectoryStore store(1, 1);
     runEnsemble(terrain, std::vector<Rock>{ rock }, p, store);
@@ -402,7 +394,7 @@ TEST(Barriers, CatchInMassFalls)
     rocks.push_back(thrown(1.2 + 1.3 * (k % 2), 30.0));
     rocks.back().position.x() -= 1.1 * (k / 2);
   }
-  SimulationParameters p = rigidParameters(6.0);
+  SimulationParameters p = rigidFor(6.0);
   p.rockRockContact = true;
   TrajectoryStore store(4, 1);
   runEnsemble(terrain, rocks, p, store);
@@ -484,7 +476,7 @@ TEST(Barriers, BehindOneThatBreaksAreMetToo)
         }
         terrain.setStructures(s);
         Rock rock = thrown(flies ? 3.0 : 0.5, 20.0);
-        SimulationParameters p = rigidParameters(3.0);
+        SimulationParameters p = rigidFor(3.0);
         p.timeStep = 0.01;
         p.rockRockContact = k % 2;
         const Trajectory t = simulate(terrain, rock, p);
@@ -560,7 +552,7 @@ TEST(Barriers, OnOneLineAreAllMetOnce)
       Structures s;
       s.barriers = nets;
       terrain.setStructures(s);
-      SimulationParameters p = rigidParameters(1.5);
+      SimulationParameters p = rigidFor(1.5);
       p.timeStep = 0.01;
       p.rockRockContact = k % 5 == 0;
       const Trajectory t = simulate(terrain, thrown(flies ? 3.0 : 0.5, 20.0), p);

@@ -1,6 +1,7 @@
 // Barriers that a rock meets with a part of itself, behind another one, or where it is released.
 
 #include "../piles.h"
+#include "rigidFor.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>
@@ -40,14 +41,6 @@ Rock box(const Vec3& size, double up, double y = 50.0)
   return rock;
 }
 
-SimulationParameters shortRun(double endTime)
-{
-  SimulationParameters p;
-  p.endTime = endTime;
-  p.rigid = true;
-  return p;
-}
-
 } // namespace
 
 TEST(StruckBarriers, PartOfARockIsToldAndTakesNothing)
@@ -73,7 +66,7 @@ TEST(StruckBarriers, PartOfARockIsToldAndTakesNothing)
       s.barriers = { netAt(60.0, 1, 3.0, 1e4) };
       s.barriers[0].records = records;
       const Rock rock = box(of.size, of.up, of.y);
-      const Trajectory t = simulate(levelWith(s), rock, shortRun(0.5 + 0.02));
+      const Trajectory t = simulate(levelWith(s), rock, rigidFor(0.5 + 0.02));
       ASSERT_EQ(t.structures.size(), of.strikes ? 1u : 0u);
       EXPECT_NEAR(t.summary.stop.x(), 60.4, 1e-9); // nothing is taken
       if (of.strikes)
@@ -113,7 +106,7 @@ TEST(StruckBarriers, ANetThatIsRunOverHoldsNoOtherRock)
 TEST(StruckBarriers, ABrakingWayMeetsWhatStandsOnIt)
 {
   const auto fall = [](const Structures& s)
-  { return simulate(levelWith(s), box(Vec3(1, 1, 1), 3.0), shortRun(3.0)); };
+  { return simulate(levelWith(s), box(Vec3(1, 1, 1), 3.0), rigidFor(3.0)); };
   Structures s;
   s.barriers = { netAt(60.0, 1, 6.0, 1e6) };
   s.barriers[0].braking = 6.0;
@@ -179,7 +172,7 @@ TEST(StruckBarriers, ABrakingWayEndsBeforeAHole)
                                                        : 103.0; },
     material(0.5, 20.0));
   terrain.setStructures(s);
-  const Trajectory t = simulate(terrain, box(Vec3(1, 1, 1), 3.0), shortRun(3.0));
+  const Trajectory t = simulate(terrain, box(Vec3(1, 1, 1), 3.0), rigidFor(3.0));
   EXPECT_EQ(t.summary.fate, Fate::Caught);
   EXPECT_GE(t.summary.stop.x(), 60.0);
   EXPECT_LT(t.summary.stop.x(), 62.2);
@@ -201,7 +194,7 @@ TEST(StruckBarriers, ARockReleasedOnALineIsNotBehindIt)
       }
       Rock rock = box(Vec3(1, 1, 1), 3.0);
       rock.position.x() += beside;
-      const Trajectory t = simulate(levelWith(s), rock, shortRun(0.5));
+      const Trajectory t = simulate(levelWith(s), rock, rigidFor(0.5));
       EXPECT_TRUE(t.structures.empty());
       EXPECT_NEAR(t.summary.stop.x(), 60.0, 1e-6);
     }

@@ -2,6 +2,7 @@
 
 #include "dams.h"
 #include "piles.h"
+#include "rigidFor.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"
 #include "terrain/stemHit.h"
@@ -47,14 +48,6 @@ Rock shot(const Vec3& from, const Vec3& way, double energy)
   rock.velocity = kSpeed * way.normalized();
   rock.density = 2.0 * energy / (kSpeed * kSpeed * 0.125);
   return rock;
-}
-
-SimulationParameters rigidFor(double seconds)
-{
-  SimulationParameters p;
-  p.endTime = seconds;
-  p.rigid = true;
-  return p;
 }
 
 Trajectory run(const Terrain& ground, const Rock& rock, double seconds, bool together = false)

@@ -4,6 +4,7 @@
 #include "form.h"
 #include "law/settings.h"
 #include "piles.h"
+#include "rigidFor.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"
 
@@ -16,14 +17,6 @@ using namespace rockfall::testing;
 
 namespace
 {
-
-SimulationParameters rigidParameters(double endTime)
-{
-  SimulationParameters p;
-  p.endTime = endTime;
-  p.rigid = true;
-  return p;
-}
 
 double auditError(const EnergyAudit& e)
 {
@@ -45,9 +38,9 @@ TEST(Obstacles, ReboundOnACrestIsThatOnAPlane)
       Rock rock;
       rock.shape = makeShape(Shape::Cube, 1.0);
       rock.position = Vec3(x, 50.0, 105.5); // 2 m over the crest
-      const Trajectory t = simulate(terrain, rock, rigidParameters(1.0));
+      const Trajectory t = simulate(terrain, rock, rigidFor(1.0));
       rock.position.z() -= 3.0;
-      const Trajectory flat = simulate(plane, rock, rigidParameters(1.0));
+      const Trajectory flat = simulate(plane, rock, rigidFor(1.0));
       ASSERT_EQ(t.summary.impacts, 1);
       const double ratio = t.impacts[0].velocityAfter.z() / -t.impacts[0].velocityBefore.z();
       EXPECT_NEAR(ratio, e, 1e-3); // the impact is resolved with eight steps
@@ -78,7 +71,7 @@ TEST(Obstacles, ACubeSlidesDownTheSideAsCoulombSays)
     // 3 m below the crest's edge at y = 51 m.
     rock.position = Vec3(x, 51.0 + 4.0, 112.0 - 2.0) + 0.5 * normal;
     const double time = 1.5;
-    const Trajectory t = simulate(terrain, rock, rigidParameters(time));
+    const Trajectory t = simulate(terrain, rock, rigidFor(time));
     const double way =
       0.5 * kGravity * (std::sin(alpha) - std::cos(alpha) * std::tan(radians(20.0))) * time * time;
     // The first step presses the cube down; METHOD 9.2's tolerance of sliding.
@@ -102,7 +95,7 @@ TEST(Obstacles, AWallStopsASlowRock)
   rock.shape = makeShape(Shape::Icosahedron, 1.0);
   rock.position = Vec3(105.0, 101.3, terrain.elevation(105.0, 101.3) + 1.5);
   rock.velocity = Vec3(6.0, 0.0, 0.0);
-  SimulationParameters p = rigidParameters(60.0);
+  SimulationParameters p = rigidFor(60.0);
   const Trajectory t = simulate(terrain, rock, p);
   EXPECT_LT(t.summary.stop.x(), 119.3);
   Terrain bare(terrain, terrain.material(), {});
@@ -133,7 +126,7 @@ int shoot(const Terrain& terrain, int count, std::uint64_t seed, Aim&& aim, Behi
     aim(rock, uniform);
     rocks.push_back(rock);
   }
-  SimulationParameters p = rigidParameters(0.45);
+  SimulationParameters p = rigidFor(0.45);
   p.outputInterval = 0.02;
   TrajectoryStore store(count, 1);
   runEnsemble(terrain, rocks, p, store);
@@ -229,7 +222,7 @@ TEST(Obstacles, AStemWithoutCapacityDoesNotCarry)
     }
     Terrain forest = bare;
     forest.setStructures(s);
-    SimulationParameters p = rigidParameters(0.5);
+    SimulationParameters p = rigidFor(0.5);
     p.endTime = 0.5; // before it comes to the ground
     const Trajectory through = simulate(forest, rock, p), free = simulate(bare, rock, p);
     broken += through.structures.size();
@@ -258,7 +251,7 @@ TEST(Obstacles, ATreeBreaksForMoreThanItsCapacityOnly)
     rock.shape = makeShape(Shape::Cube, 0.5);
     rock.position = Vec3(47.0, 50.0, 110.0);
     rock.velocity = Vec3(speed, 0.0, 0.0);
-    const Trajectory t = simulate(terrain, rock, rigidParameters(0.5));
+    const Trajectory t = simulate(terrain, rock, rigidFor(0.5));
     const double energy = 0.5 * 500.0 * speed * speed; // 56 and 156 kJ
     if (energy < tree.capacity)
     {
@@ -307,7 +300,7 @@ TEST(Obstacles, AStemTakesTheShareOfItsOffset)
         Rock rock = brick(Vec3(1, 1, 1), Vec3(48.0, 50.0 + side * offset * (0.5 + 0.2), 110.0), 0);
         rock.density = 4.0 * capacity / (speed * speed);
         rock.velocity = Vec3(speed, 0.0, 0.0);
-        pile.parameters = rigidParameters(0.3);
+        pile.parameters = rigidFor(0.3);
         pile.rocks = { rock };
         Trajectory t;
         if (together)
@@ -360,7 +353,7 @@ TEST(Obstacles, AStemHoldsTheShareOfItsOffset)
     Rock rock = brick(Vec3(1, 1, 1), Vec3(48.0, 50.0 + offset * (0.5 + 0.2), 110.0), 0);
     rock.density = 2.0 * energy * capacity / (speed * speed);
     rock.velocity = Vec3(speed, 0.0, 0.0);
-    const Trajectory t = simulate(ground, rock, rigidParameters(0.3));
+    const Trajectory t = simulate(ground, rock, rigidFor(0.3));
     if (energy < 0.789)
     {
       EXPECT_TRUE(t.structures.empty());
@@ -404,7 +397,7 @@ TEST(Obstacles, ResultsAreTheSameForAnyThreads)
   std::size_t broken = 0;
   for (int run = 0; run < 2; ++run)
   {
-    SimulationParameters p = rigidParameters(12.0);
+    SimulationParameters p = rigidFor(12.0);
     p.threads = run == 0 ? 1 : 4;
     TrajectoryStore store(24, 1);
     runEnsemble(terrain, rocks, p, store);

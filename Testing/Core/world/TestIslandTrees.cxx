@@ -30,15 +30,22 @@ Tree stem(const Eigen::Vector2d& position, double capacity)
   return tree;
 }
 
-/// A cube stands before stems, its face so far off (m); another one hits it at 10 m/s.
-std::vector<Trajectory> drive(const std::vector<Tree>& stems, double gap)
+/// Stems on level ground of so many nodes.
+Pile levelWith(const std::vector<Tree>& stems, int nodes, const SurfaceMaterial& ground)
 {
   Pile pile;
   pile.ground = makeSlope(
-    21, 5.0, [](double, double) { return 0.0; }, material(0.3, 0.0));
+    nodes, 5.0, [](double, double) { return 0.0; }, ground);
   Structures structures;
   structures.trees = stems;
   pile.ground.setStructures(structures);
+  return pile;
+}
+
+/// A cube stands before stems, its face so far off (m); another one hits it at 10 m/s.
+std::vector<Trajectory> drive(const std::vector<Tree>& stems, double gap)
+{
+  Pile pile = levelWith(stems, 21, material(0.3, 0.0));
   pile.parameters.endTime = 0.8;
   pile.parameters.rockRestitution = 0.3;
   pile.parameters.rockFrictionAngle = 0.0;
@@ -124,12 +131,7 @@ TEST(IslandTrees, WhoeverPushesFromBehindIsHeldUpToTheCapacity)
       for (const double capacity : { 1e5, 1e6 })
       {
         SCOPED_TRACE(std::to_string(side) + ", " + std::to_string(timeStep));
-        Pile pile;
-        pile.ground = makeSlope(
-          41, 5.0, [](double, double) { return 0.0; }, material(0.5, 20.0));
-        Structures structures;
-        structures.trees = { stem({ 100.0, 100.0 }, capacity) };
-        pile.ground.setStructures(structures);
+        Pile pile = levelWith({ stem({ 100.0, 100.0 }, capacity) }, 41, material(0.5, 20.0));
         pile.parameters.timeStep = timeStep;
         pile.parameters.endTime = 4.0;
         const double face = 100.0 - kFlat - 0.3 - side;
@@ -153,12 +155,7 @@ TEST(IslandTrees, ATrainOfRocksIsNoSingleRock)
   {
     for (const double gap : { 0.001, 0.05 })
     {
-      Pile pile;
-      pile.ground = makeSlope(
-        41, 5.0, [](double, double) { return 0.0; }, material(0.5, 0.0));
-      Structures structures;
-      structures.trees = { stem({ 100.0, 100.0 }, 1.5e5) };
-      pile.ground.setStructures(structures);
+      Pile pile = levelWith({ stem({ 100.0, 100.0 }, 1.5e5) }, 41, material(0.5, 0.0));
       pile.parameters.timeStep = timeStep;
       pile.parameters.endTime = 2.0;
       pile.parameters.rockRestitution = 0.0;
@@ -183,12 +180,7 @@ TEST(IslandTrees, HitsOfTwoRocksAtOnceAddUp)
   {
     for (const double capacity : { 1e5, 2e5 })
     {
-      Pile pile;
-      pile.ground = makeSlope(
-        41, 5.0, [](double, double) { return 0.0; }, material(0.0, 0.0));
-      Structures structures;
-      structures.trees = { stem({ 100.0, 100.0 }, capacity) };
-      pile.ground.setStructures(structures);
+      Pile pile = levelWith({ stem({ 100.0, 100.0 }, capacity) }, 41, material(0.0, 0.0));
       pile.parameters.endTime = 1.0;
       pile.parameters.rockRestitution = pile.parameters.rockFrictionAngle = 0.0;
       pile.rocks = { brick(Vec3(1, 1, 1), Vec3(98.6, 100.0, 0.5001), 0),
@@ -280,12 +272,7 @@ TEST(IslandTrees, WhoBreaksOneSaysNothingOfOtherIslands)
 {
   // The last one of three breaks a tree; the two of another island, which lie on each other, do
   // not.
-  Pile pile;
-  pile.ground = makeSlope(
-    21, 5.0, [](double, double) { return 0.0; }, material(0.3, 0.0));
-  Structures structures;
-  structures.trees = { stem({ 50.0, 50.0 }, 10.0) };
-  pile.ground.setStructures(structures);
+  Pile pile = levelWith({ stem({ 50.0, 50.0 }, 10.0) }, 21, material(0.3, 0.0));
   pile.parameters.endTime = 0.5;
   pile.parameters.timeStep = 0.002;
   pile.parameters.rockFrictionAngle = 0.0;
