@@ -320,6 +320,7 @@ void KeptRun::takeResults(RunSink& sink)
   const LostRocks lost = lostOf(summary);
   std::vector<std::string> further = brokenNotes(sink.broken(), parameters);
   std::ranges::move(unclosedNotes(sink.unclosed()), std::back_inserter(further));
+  std::ranges::move(struckNotes(sink.atBarriers()), std::back_inserter(further));
   tellLost(lost, summary->GetFieldData(), further, printNotes);
   writeLost(lost, trajectories->GetFieldData());
   this->describe();

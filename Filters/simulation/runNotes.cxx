@@ -129,12 +129,12 @@ std::vector<std::string> brokenNotes(
 std::vector<std::string> unclosedNotes(const UnclosedBooks& books)
 {
   std::vector<std::string> notes;
-  const auto tell = [&](std::int64_t rocks, const char* how, const char* what)
+  const auto tell = [&](const CountedRocks& counted, const char* how, const char* what)
   {
-    if (rocks > 0)
+    if (counted.rocks > 0)
     {
-      notes.push_back(std::to_string(rocks) + " of " + std::to_string(books.rocks) + " rocks " +
-        how + " nowhere than " + numberText(100.0 * UnclosedBooks::kTold) +
+      notes.push_back(std::to_string(counted.rocks) + " of " + std::to_string(books.rocks) +
+        " rocks " + how + " nowhere than " + numberText(100.0 * UnclosedBooks::kTold) +
         " % of what they had (" + what + "; give a smaller TimeStep");
     }
   };
@@ -142,6 +142,20 @@ std::vector<std::string> unclosedNotes(const UnclosedBooks& books)
     "EnergyNumerical, or losses on the slope, below 0): they are too fast");
   tell(books.lost, "lost more energy to", "EnergyNumerical above 0): they stop too soon");
   return notes;
+}
+
+std::vector<std::string> struckNotes(const RocksAtBarriers& rocks)
+{
+  if (rocks.struck.rocks == 0)
+  {
+    return {};
+  }
+  return { std::to_string(rocks.struck.rocks) + " of " + std::to_string(rocks.met.rocks) +
+    " rocks that came to a barrier struck it with a part only, above it or beyond its end, and "
+    "went "
+    "on with all their energy (Outcome 5 of the structures): for them the barrier is too low or "
+    "too "
+    "short" };
 }
 
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks)

@@ -4,6 +4,8 @@
 #include "shared/rockPaths.h"
 #include "simulation/motion.h"
 
+#include <algorithm>
+
 namespace rockfall::filters
 {
 
@@ -25,18 +27,32 @@ void BrokenRocks::add(const TrajectorySummary& summary)
   }
 }
 
+void CountedRocks::add(bool whole, bool holds)
+{
+  const bool counted = this->last && !whole;
+  this->last = counted || holds;
+  this->rocks += this->last && !counted ? 1 : 0;
+}
+
 void UnclosedBooks::add(const TrajectorySummary& summary, double gravity)
 {
   const bool whole = summary.piece == 0;
   this->rocks += whole ? 1 : 0;
-  const auto count = [whole](bool is, bool& last, std::int64_t& counted)
+  this->gained.add(whole, gainFromNowhere(summary, gravity) > kTold);
+  this->lost.add(whole, lossToNowhere(summary, gravity) > kTold);
+}
+
+void RocksAtBarriers::add(const TrajectorySummary& summary, std::span<const StructureEvent> events)
+{
+  const bool whole = summary.piece == 0;
+  const auto any = [events](auto... outcomes)
   {
-    const bool told = last && !whole;
-    last = told || is;
-    counted += last && !told ? 1 : 0;
+    return std::any_of(events.begin(), events.end(),
+      [=](const StructureEvent& event) { return ((event.outcome == outcomes) || ...); });
   };
-  count(gainFromNowhere(summary, gravity) > kTold, this->lastGained, this->gained);
-  count(lossToNowhere(summary, gravity) > kTold, this->lastLost, this->lost);
+  using enum StructureOutcome;
+  this->met.add(whole, any(BarrierStopped, BarrierBroken, BarrierStruck));
+  this->struck.add(whole, any(BarrierStruck));
 }
 
 RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)
@@ -54,6 +70,7 @@ void RunSink::consume(Trajectory&& trajectory)
   hash_.add(trajectory.summary.hash);
   broken_.add(trajectory.summary);
   unclosed_.add(trajectory.summary, gravity_);
+  atBarriers_.add(trajectory.summary, trajectory.structures);
   rows_.append(trajectory.summary);
   impacts_.append(trajectory.summary, trajectory.impacts);
   structures_.append(trajectory.summary, trajectory.structures);

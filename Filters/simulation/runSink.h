@@ -45,17 +45,34 @@ struct BrokenRocks
   void add(const TrajectorySummary& summary);
 };
 
-/// Rocks whose energy came from nowhere or went there, they or one of their pieces, over all iterations.
+/// Rocks of which something holds, for themselves or for one of their pieces, over all iterations.
+struct CountedRocks
+{
+  std::int64_t rocks = 0;
+  bool last = false; ///< The rock that was added last is one of them.
+
+  /// A rock (`whole`), or a piece of the last one.
+  void add(bool whole, bool holds);
+};
+
+/// Rocks whose energy came from nowhere or went there, over all iterations.
 struct UnclosedBooks
 {
   static constexpr double kTold = 0.05; ///< Share of what one had: 2.5 % of its speed.
   std::int64_t rocks = 0;               ///< All of them.
-  std::int64_t gained = 0, lost = 0;    ///< Those that gained or lost more.
-  bool lastGained = false;              ///< The rock that was added last is one of those.
-  bool lastLost = false;
+  CountedRocks gained, lost;            ///< Those that gained or lost more.
 
   /// Summary of a rock, or of a piece of the last one. `gravity`: m/s².
   void add(const TrajectorySummary& summary, double gravity);
+};
+
+/// Rocks at barriers that hold rocks, over all iterations.
+struct RocksAtBarriers
+{
+  CountedRocks met;    ///< Held, or went on.
+  CountedRocks struck; ///< Met one with a part that is too small for it to hold them.
+
+  void add(const TrajectorySummary& summary, std::span<const StructureEvent> events);
 };
 
 /// Writes trajectories into VTK arrays.
@@ -77,6 +94,7 @@ public:
   std::vector<Trajectory>& whole() { return whole_; }
   const BrokenRocks& broken() const { return broken_; }
   const UnclosedBooks& unclosed() const { return unclosed_; }
+  const RocksAtBarriers& atBarriers() const { return atBarriers_; }
 
 private:
   KeptParts kept_;
@@ -88,6 +106,7 @@ private:
   std::vector<Trajectory> whole_;
   BrokenRocks broken_;
   UnclosedBooks unclosed_;
+  RocksAtBarriers atBarriers_;
   double gravity_; ///< m/s²
 };
 

@@ -233,8 +233,8 @@ TEST(RunOutputs, RocksWhoseBooksDoNotCloseAreToldOf)
     summary.gained = of.gained;
     summary.energy.numerical = of.numerical;
     sink.consume(std::move(trajectory));
-    EXPECT_EQ(sink.unclosed().gained - before.gained, of.gains ? 1 : 0) << of.gained;
-    EXPECT_EQ(sink.unclosed().lost - before.lost, of.loses ? 1 : 0) << of.numerical;
+    EXPECT_EQ(sink.unclosed().gained.rocks - before.gained.rocks, of.gains ? 1 : 0) << of.gained;
+    EXPECT_EQ(sink.unclosed().lost.rocks - before.lost.rocks, of.loses ? 1 : 0) << of.numerical;
   }
   EXPECT_EQ(sink.unclosed().rocks, 7);
   EXPECT_EQ(filters::unclosedNotes(sink.unclosed()).size(), 2u);

@@ -8,6 +8,7 @@
 
 #include "vtkCellData.h"
 #include "vtkPointData.h"
+#include "vtkStringArray.h"
 #include "vtkXMLPolyDataReader.h"
 #include "vtkXMLPolyDataWriter.h"
 
@@ -248,6 +249,34 @@ TEST_F(TestStructures, ABarrierCatchesTheRock)
   EXPECT_NEAR(std::hypot(summary("StopX") - 60.0, summary("StopY") - met->GetPoint(0)[1], drop),
     value(met->GetPointData(), "BrakingDistance"), 1e-6);
   EXPECT_NEAR(summary("EnergyStructures"), energy + summary("Mass") * 9.81 * drop, 1e-6 * energy);
+}
+
+/// A net that meets a part of the rock lets it go on: the run says so, as nothing stops it.
+TEST_F(TestStructures, ANetThatIsTooShortIsTold)
+{
+  this->Rocks->SetVelocity(10.0, 0.0, 5.0);
+  this->Simulation->SetEndTime(20.0);
+  const auto told = [this]
+  {
+    const auto* notes =
+      vtkStringArray::SafeDownCast(this->Summary()->GetFieldData()->GetAbstractArray("Notes"));
+    int count = 0;
+    for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
+    {
+      count += notes->GetValue(k).find("1 of 1 rocks that came to a barrier struck it") == 0;
+    }
+    return count;
+  };
+  const double y = this->Output(4)->GetPoint(0)[1];
+  EXPECT_EQ(told(), 0); // held
+  this->Terrain->SetBarrierFile(
+    this
+      ->WriteFile("short.csv",
+        "WKT,height,capacity\n\"LINESTRING(60 1,60 " + std::to_string(y - 0.1) + ")\",30,1000\n")
+      .c_str());
+  ASSERT_EQ(this->Output(4)->GetNumberOfPoints(), 1);
+  EXPECT_EQ(value(this->Output(4)->GetPointData(), "Outcome"), 5.0);
+  EXPECT_EQ(told(), 1);
 }
 
 TEST_F(TestStructures, NetsThatWearAreNewForRocksThatFallAlone)
