@@ -154,11 +154,7 @@ std::vector<std::string> doubtsOn(vtkPolyData* trajectories, vtkPolyData* mesh)
     notes.push_back(std::move(other));
   }
   vtkFieldData* fields = trajectories->GetFieldData();
-  auto* doubts = vtkStringArray::SafeDownCast(fields->GetAbstractArray(kRunDoubts));
-  for (vtkIdType k = 0; doubts && k < doubts->GetNumberOfValues(); ++k)
-  {
-    notes.push_back(doubts->GetValue(k));
-  }
+  std::ranges::move(doubtsOfRun(fields), std::back_inserter(notes));
   if (const std::int64_t copies = copiesIn(trajectories); copies > 0)
   {
     notes.push_back(std::to_string(copies) +
@@ -205,12 +201,7 @@ void tell(const std::vector<std::string>& notes, vtkFieldData* fieldData, bool s
     showNotes(notes, fieldData);
     return;
   }
-  vtkSmartPointer<vtkStringArray> kept;
-  for (const std::string& note : notes)
-  {
-    kept = kept ? kept : addArray<vtkStringArray>(fieldData, "Notes");
-    kept->InsertNextValue(note);
-  }
+  addTexts(fieldData, "Notes", notes);
 }
 
 } // namespace

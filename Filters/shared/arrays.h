@@ -16,10 +16,13 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace rockfall::filters
@@ -34,6 +37,21 @@ vtkSmartPointer<Array> addArray(vtkFieldData* data, const char* name, int compon
   array->SetNumberOfComponents(components);
   data->AddArray(array);
   return array;
+}
+
+/// Adds texts to the array of this name, which is made for the first of them.
+inline void addTexts(vtkFieldData* data, const char* name, std::span<const std::string> texts)
+{
+  vtkSmartPointer<vtkStringArray> array =
+    vtkStringArray::SafeDownCast(data->GetAbstractArray(name));
+  if (!array && !texts.empty())
+  {
+    array = addArray<vtkStringArray>(data, name);
+  }
+  for (const std::string& text : texts)
+  {
+    array->InsertNextValue(text);
+  }
 }
 
 /// Keeps the ranges of an array of these values with it, as VTK does when it is asked for them.

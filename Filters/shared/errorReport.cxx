@@ -8,6 +8,8 @@
 #include "vtkOutputWindow.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
+
 namespace rockfall::filters
 {
 
@@ -65,18 +67,8 @@ void showNote(const std::string& note)
 
 void showNotes(const std::vector<std::string>& notes, vtkFieldData* fieldData)
 {
-  if (notes.empty())
-  {
-    return;
-  }
-  vtkSmartPointer<vtkStringArray> kept =
-    vtkStringArray::SafeDownCast(fieldData->GetAbstractArray("Notes"));
-  kept = kept ? kept : addArray<vtkStringArray>(fieldData, "Notes");
-  for (const std::string& note : notes)
-  {
-    showNote(note);
-    kept->InsertNextValue(note);
-  }
+  std::ranges::for_each(notes, showNote);
+  addTexts(fieldData, "Notes", notes);
 }
 
 } // namespace rockfall::filters

@@ -145,6 +145,17 @@ std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string
   return content.value();
 }
 
+std::vector<std::string> doubtsOfRun(vtkFieldData* fields)
+{
+  std::vector<std::string> doubts;
+  auto* texts = vtkStringArray::SafeDownCast(fields->GetAbstractArray(kRunDoubts));
+  for (vtkIdType k = 0; texts && k < texts->GetNumberOfValues(); ++k)
+  {
+    doubts.push_back(texts->GetValue(k));
+  }
+  return doubts;
+}
+
 RunOrigin runOf(vtkPolyData* trajectories)
 {
   vtkFieldData* data = trajectories->GetFieldData();

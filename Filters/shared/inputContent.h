@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 class vtkFieldData;
 class vtkPolyData;
@@ -30,8 +31,12 @@ inline constexpr char kRunProperties[] = "RunProperties";
 /// Field array of trajectories: rocks times iterations of their run.
 inline constexpr char kRocksReleased[] = "RocksReleased";
 
-/// Field array of trajectories of several runs: notes on what differs between these.
+/// Field array of trajectories: notes on books of their run that do not close, and of several runs on
+/// what differs between these.
 inline constexpr char kRunDoubts[] = "RunDoubts";
+
+/// The texts of that array.
+std::vector<std::string> doubtsOfRun(vtkFieldData* fields);
 
 /// What trajectories fell on, and by which properties, as far as they tell.
 RunOrigin runOf(vtkPolyData* trajectories);

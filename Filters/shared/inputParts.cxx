@@ -20,6 +20,9 @@
 #include "vtkUnstructuredGrid.h"
 #include "vtkVariant.h"
 
+#include <algorithm>
+#include <iterator>
+#include <string>
 #include <vector>
 
 namespace rockfall::filters
@@ -130,23 +133,27 @@ void mergeFields(const std::vector<Part>& parts, const std::string& name, vtkFie
   }
 }
 
-/// What differs between the runs of these parts goes into the field data, and how many rocks the
-/// first one had out of it.
+/// What differs between the runs of these parts goes into the field data with what each says of its
+/// own, and how many rocks the first one had out of it.
 void askAfterParts(const std::vector<Part>& parts, vtkFieldData* output)
 {
+  const auto nameOf = [&](std::size_t k)
+  { return "part " + std::to_string(parts[k].number) + " of the Input"; };
   std::vector<RunOrigin> runs;
-  for (const Part& part : parts)
+  std::vector<std::string> ofTheirOwn;
+  for (std::size_t k = 0; k < parts.size(); ++k)
   {
-    runs.push_back(runOf(part.data));
+    runs.push_back(runOf(parts[k].data));
+    for (const std::string& doubt : doubtsOfRun(parts[k].data->GetFieldData()))
+    {
+      ofTheirOwn.push_back(nameOf(k) + ": " + doubt);
+    }
   }
-  const auto notes = askAfterRuns(runs,
-    [&](std::size_t k) { return "part " + std::to_string(parts[k].number) + " of the Input"; });
+  std::vector<std::string> notes = askAfterRuns(runs, nameOf);
+  std::ranges::move(ofTheirOwn, std::back_inserter(notes));
   output->RemoveArray(kRocksReleased);
-  const auto doubts = addArray<vtkStringArray>(output, kRunDoubts);
-  for (const std::string& note : notes)
-  {
-    doubts->InsertNextValue(note);
-  }
+  output->RemoveArray(kRunDoubts);
+  addTexts(output, kRunDoubts, notes);
 }
 
 /// The one part that is a slope; null if none is.

@@ -144,18 +144,15 @@ std::vector<std::string> unclosedNotes(const UnclosedBooks& books)
   return notes;
 }
 
-std::vector<std::string> struckNotes(const RocksAtBarriers& rocks)
+std::vector<std::string> struckNotes(const StruckBarriers& barriers)
 {
-  if (rocks.struck.rocks == 0)
+  if (barriers.struck.rocks == 0)
   {
     return {};
   }
-  return { std::to_string(rocks.struck.rocks) + " of " + std::to_string(rocks.met.rocks) +
-    " rocks that came to a barrier struck it with a part only, above it or beyond its end, and "
-    "went "
-    "on with all their energy (Outcome 5 of the structures): for them the barrier is too low or "
-    "too "
-    "short" };
+  return { std::to_string(barriers.struck.rocks) + " of " + std::to_string(barriers.rocks) +
+    " rocks struck a barrier with a part only, above it or beyond its end, and went on with all "
+    "their energy (Outcome 5 of the structures): it is too low or too short for them" };
 }
 
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks)

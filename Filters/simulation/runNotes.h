@@ -45,7 +45,7 @@ std::vector<std::string> brokenNotes(
 std::vector<std::string> unclosedNotes(const UnclosedBooks& books);
 
 /// The note on rocks of which a barrier met too little to hold them.
-std::vector<std::string> struckNotes(const RocksAtBarriers& rocks);
+std::vector<std::string> struckNotes(const StruckBarriers& barriers);
 
 /// Note of the first rank on blocks that were pushed apart.
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks);

@@ -1,8 +1,11 @@
 #include "simulation/runSink.h"
 
 #include "run/packing.h"
+#include "shared/arrays.h"
+#include "shared/inputContent.h"
 #include "shared/rockPaths.h"
 #include "simulation/motion.h"
+#include "simulation/runNotes.h"
 
 #include <algorithm>
 
@@ -42,17 +45,14 @@ void UnclosedBooks::add(const TrajectorySummary& summary, double gravity)
   this->lost.add(whole, lossToNowhere(summary, gravity) > kTold);
 }
 
-void RocksAtBarriers::add(const TrajectorySummary& summary, std::span<const StructureEvent> events)
+void StruckBarriers::add(const TrajectorySummary& summary, std::span<const StructureEvent> events)
 {
   const bool whole = summary.piece == 0;
-  const auto any = [events](auto... outcomes)
-  {
-    return std::any_of(events.begin(), events.end(),
-      [=](const StructureEvent& event) { return ((event.outcome == outcomes) || ...); });
-  };
-  using enum StructureOutcome;
-  this->met.add(whole, any(BarrierStopped, BarrierBroken, BarrierStruck));
-  this->struck.add(whole, any(BarrierStruck));
+  this->rocks += whole ? 1 : 0;
+  this->struck.add(whole,
+    std::any_of(events.begin(), events.end(),
+      [](const StructureEvent& event)
+      { return event.outcome == StructureOutcome::BarrierStruck; }));
 }
 
 RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)
@@ -70,7 +70,7 @@ void RunSink::consume(Trajectory&& trajectory)
   hash_.add(trajectory.summary.hash);
   broken_.add(trajectory.summary);
   unclosed_.add(trajectory.summary, gravity_);
-  atBarriers_.add(trajectory.summary, trajectory.structures);
+  struck_.add(trajectory.summary, trajectory.structures);
   rows_.append(trajectory.summary);
   impacts_.append(trajectory.summary, trajectory.impacts);
   structures_.append(trajectory.summary, trajectory.structures);
@@ -97,6 +97,7 @@ void RunSink::finish(RunData& output)
   structures_.finish(output.structures);
   lines_.finish(output.trajectories);
   writeRetention(kept_.retention, output.trajectories->GetFieldData());
+  addTexts(output.trajectories->GetFieldData(), kRunDoubts, unclosedNotes(unclosed_));
   impacts_.finish(output.impacts);
   rows_.finish(output.summary);
 }

@@ -66,11 +66,11 @@ struct UnclosedBooks
   void add(const TrajectorySummary& summary, double gravity);
 };
 
-/// Rocks at barriers that hold rocks, over all iterations.
-struct RocksAtBarriers
+/// Rocks of which a barrier met a part that is too small for it to hold them, over all iterations.
+struct StruckBarriers
 {
-  CountedRocks met;    ///< Held, or went on.
-  CountedRocks struck; ///< Met one with a part that is too small for it to hold them.
+  std::int64_t rocks = 0; ///< All of them.
+  CountedRocks struck;
 
   void add(const TrajectorySummary& summary, std::span<const StructureEvent> events);
 };
@@ -94,7 +94,7 @@ public:
   std::vector<Trajectory>& whole() { return whole_; }
   const BrokenRocks& broken() const { return broken_; }
   const UnclosedBooks& unclosed() const { return unclosed_; }
-  const RocksAtBarriers& atBarriers() const { return atBarriers_; }
+  const StruckBarriers& struck() const { return struck_; }
 
 private:
   KeptParts kept_;
@@ -106,7 +106,7 @@ private:
   std::vector<Trajectory> whole_;
   BrokenRocks broken_;
   UnclosedBooks unclosed_;
-  RocksAtBarriers atBarriers_;
+  StruckBarriers struck_;
   double gravity_; ///< m/s²
 };
 

@@ -1,5 +1,7 @@
 // Composite data as any input: as if the parts had been appended, or one error; never leaf by leaf.
 
+#include "shared/arrays.h"
+#include "shared/inputContent.h"
 #include "simulationTest.h"
 
 #include "vtkAppendPolyData.h"
@@ -16,6 +18,7 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkRockfallHazardMap.h"
+#include "vtkStringArray.h"
 #include "vtkTrajectoryCollector.h"
 #include "vtkTrajectoryLayerWriter.h"
 
@@ -250,6 +253,35 @@ TEST_F(TestCompositeInputs, TrajectoriesOfTwoRunsInEveryFilter)
   EXPECT_EQ(passed[0], passed[1]);
   EXPECT_GT(layers[0], 1000u);
   EXPECT_EQ(layers[0], layers[1]);
+}
+
+/// Doubts on a run's books go with its trajectories, and those of each part with all of them.
+TEST_F(TestCompositeInputs, AMapTellsTheDoubtsOfItsRuns)
+{
+  this->Simulation->SetEndTime(1.0);
+  this->Simulation->Update();
+  vtkNew<vtkPolyData> doubted;
+  doubted->DeepCopy(this->Simulation->GetOutputDataObject(1));
+  rockfall::filters::addTexts(
+    doubted->GetFieldData(), rockfall::filters::kRunDoubts, std::vector<std::string>{ "odd" });
+  this->Simulation->SetFirstIteration(1);
+  this->Simulation->Update();
+  vtkNew<vtkMultiBlockDataSet> two;
+  two->SetBlock(0, this->Simulation->GetOutputDataObject(1));
+  two->SetBlock(1, doubted);
+  const auto told = [this](vtkDataObject* trajectories, const std::string& note)
+  {
+    vtkNew<vtkRockfallHazardMap> map;
+    map->SetInputDataObject(0, trajectories);
+    map->SetInputConnection(1, this->Terrain->GetOutputPort());
+    map->Update();
+    auto* notes = vtkStringArray::SafeDownCast(
+      map->GetOutputDataObject(0)->GetFieldData()->GetAbstractArray("Notes"));
+    return notes && notes->LookupValue(note) >= 0;
+  };
+  EXPECT_TRUE(told(doubted, "odd"));
+  EXPECT_TRUE(told(two, "part 2 of the Input: odd"));
+  EXPECT_FALSE(told(this->Simulation->GetOutputDataObject(1), "odd"));
 }
 
 TEST_F(TestCompositeInputs, CrossingsOfSeveralCollectors)

@@ -2,6 +2,7 @@
 
 #include "helpers.h"
 #include "shared/arrays.h"
+#include "shared/inputContent.h"
 #include "simulation/motion.h"
 #include "simulation/progressText.h"
 #include "simulation/runNotes.h"
@@ -237,7 +238,11 @@ TEST(RunOutputs, RocksWhoseBooksDoNotCloseAreToldOf)
     EXPECT_EQ(sink.unclosed().lost.rocks - before.lost.rocks, of.loses ? 1 : 0) << of.numerical;
   }
   EXPECT_EQ(sink.unclosed().rocks, 7);
-  EXPECT_EQ(filters::unclosedNotes(sink.unclosed()).size(), 2u);
+  const std::vector<std::string> notes = filters::unclosedNotes(sink.unclosed());
+  EXPECT_EQ(notes.size(), 2u);
+  filters::RunData data;
+  sink.finish(data);
+  EXPECT_EQ(filters::doubtsOfRun(data.trajectories->GetFieldData()), notes); // for maps and lines
   EXPECT_TRUE(filters::unclosedNotes({}).empty());
 }
 

@@ -263,7 +263,7 @@ TEST_F(TestStructures, ANetThatIsTooShortIsTold)
     int count = 0;
     for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
     {
-      count += notes->GetValue(k).find("1 of 1 rocks that came to a barrier struck it") == 0;
+      count += notes->GetValue(k).find("1 of 1 rocks struck a barrier with a part only") == 0;
     }
     return count;
   };
