@@ -92,9 +92,11 @@ enum class StructureOutcome
   /// A part of the rock's outline met it, too little to be held, and nothing is taken of the rock.
   /// Of more energy than the barrier has left it breaks for the other rocks.
   BarrierStruck = 5,
+  BarrierPassed = 6, ///< The rock went over it.
+  BarrierGone = 7,   ///< The rock went where another one had broken it.
 };
 
-/// A rock at a barrier, or at a tree that does not hold it. Trees that hold and embankments are slope:
+/// A rock at the line of a barrier, or at a tree that does not hold it. Trees that hold and embankments are slope:
 /// their impacts are ImpactEvents.
 struct StructureEvent
 {

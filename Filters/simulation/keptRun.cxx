@@ -319,7 +319,7 @@ void KeptRun::takeResults(RunSink& sink)
   addArray<vtkStringArray>(summary->GetFieldData(), "StateHash")->InsertNextValue(stateHash);
   const LostRocks lost = lostOf(summary);
   std::vector<std::string> further = brokenNotes(sink.broken(), parameters);
-  std::ranges::move(struckNotes(sink.struck()), std::back_inserter(further));
+  std::ranges::move(passedNotes(sink.passedBarriers()), std::back_inserter(further));
   std::ranges::move(unclosedNotes(sink.unclosed()), std::back_inserter(further));
   tellLost(lost, summary->GetFieldData(), further, printNotes);
   writeLost(lost, trajectories->GetFieldData());

@@ -144,15 +144,23 @@ std::vector<std::string> unclosedNotes(const UnclosedBooks& books)
   return notes;
 }
 
-std::vector<std::string> struckNotes(const StruckBarriers& barriers)
+std::vector<std::string> passedNotes(const PassedBarriers& barriers)
 {
-  if (barriers.struck.rocks == 0)
+  std::vector<std::string> notes;
+  const auto tell = [&](const CountedRocks& counted, const char* how)
   {
-    return {};
-  }
-  return { std::to_string(barriers.struck.rocks) + " of " + std::to_string(barriers.rocks) +
-    " rocks struck a barrier with a part only, above it or beyond its end, and went on with all "
-    "their energy (Outcome 5 of the structures): it is too low or too short for them" };
+    if (counted.rocks > 0)
+    {
+      notes.push_back(
+        std::to_string(counted.rocks) + " of " + std::to_string(barriers.rocks) + " rocks " + how);
+    }
+  };
+  tell(
+    barriers.passed, "went over a barrier (Outcome 6 of the structures): it is too low for them");
+  tell(barriers.struck,
+    "struck a barrier with a part only, above it or beyond its end, and went on with all their "
+    "energy (Outcome 5 of the structures): it is too low or too short for them");
+  return notes;
 }
 
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks)

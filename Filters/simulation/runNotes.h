@@ -44,8 +44,8 @@ std::vector<std::string> brokenNotes(
 /// The notes on rocks that got energy from nowhere, or lost it there.
 std::vector<std::string> unclosedNotes(const UnclosedBooks& books);
 
-/// The note on rocks of which a barrier met too little to hold them.
-std::vector<std::string> struckNotes(const StruckBarriers& barriers);
+/// The notes on rocks that barriers are too low or too short for.
+std::vector<std::string> passedNotes(const PassedBarriers& barriers);
 
 /// Note of the first rank on blocks that were pushed apart.
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks);

@@ -45,14 +45,14 @@ void UnclosedBooks::add(const TrajectorySummary& summary, double gravity)
   this->lost.add(whole, lossToNowhere(summary, gravity) > kTold);
 }
 
-void StruckBarriers::add(const TrajectorySummary& summary, std::span<const StructureEvent> events)
+void PassedBarriers::add(const TrajectorySummary& summary, std::span<const StructureEvent> events)
 {
   const bool whole = summary.piece == 0;
+  const auto any = [events](StructureOutcome outcome)
+  { return std::ranges::find(events, outcome, &StructureEvent::outcome) != events.end(); };
   this->rocks += whole ? 1 : 0;
-  this->struck.add(whole,
-    std::any_of(events.begin(), events.end(),
-      [](const StructureEvent& event)
-      { return event.outcome == StructureOutcome::BarrierStruck; }));
+  this->passed.add(whole, any(StructureOutcome::BarrierPassed));
+  this->struck.add(whole, any(StructureOutcome::BarrierStruck));
 }
 
 RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)
@@ -70,7 +70,7 @@ void RunSink::consume(Trajectory&& trajectory)
   hash_.add(trajectory.summary.hash);
   broken_.add(trajectory.summary);
   unclosed_.add(trajectory.summary, gravity_);
-  struck_.add(trajectory.summary, trajectory.structures);
+  passedBarriers_.add(trajectory.summary, trajectory.structures);
   rows_.append(trajectory.summary);
   impacts_.append(trajectory.summary, trajectory.impacts);
   structures_.append(trajectory.summary, trajectory.structures);

@@ -66,11 +66,11 @@ struct UnclosedBooks
   void add(const TrajectorySummary& summary, double gravity);
 };
 
-/// Rocks of which a barrier met a part that is too small for it to hold them, over all iterations.
-struct StruckBarriers
+/// Rocks that a barrier which stands let go on, over it or with a part against it, over all iterations.
+struct PassedBarriers
 {
   std::int64_t rocks = 0; ///< All of them.
-  CountedRocks struck;
+  CountedRocks passed, struck;
 
   void add(const TrajectorySummary& summary, std::span<const StructureEvent> events);
 };
@@ -94,7 +94,7 @@ public:
   std::vector<Trajectory>& whole() { return whole_; }
   const BrokenRocks& broken() const { return broken_; }
   const UnclosedBooks& unclosed() const { return unclosed_; }
-  const StruckBarriers& struck() const { return struck_; }
+  const PassedBarriers& passedBarriers() const { return passedBarriers_; }
 
 private:
   KeptParts kept_;
@@ -106,7 +106,7 @@ private:
   std::vector<Trajectory> whole_;
   BrokenRocks broken_;
   UnclosedBooks unclosed_;
-  StruckBarriers struck_;
+  PassedBarriers passedBarriers_;
   double gravity_; ///< m/s²
 };
 

@@ -38,7 +38,8 @@ using Meanings = std::vector<Meaning>; ///< Of 0, 1, …
 // Colours that colour-blind people tell apart (Okabe & Ito 2008).
 constexpr Colour kBlue = { 0.0, 0.447, 0.698 }, kGreen = { 0.0, 0.62, 0.451 },
                  kOrange = { 0.902, 0.624, 0.0 }, kRed = { 0.835, 0.369, 0.0 },
-                 kPink = { 0.8, 0.475, 0.655 }, kGrey = { 0.6, 0.6, 0.6 };
+                 kPink = { 0.8, 0.475, 0.655 }, kGrey = { 0.6, 0.6, 0.6 },
+                 kYellow = { 0.941, 0.894, 0.259 }, kSky = { 0.337, 0.706, 0.914 };
 
 /// Of the codes that RockfallSimulationOutput.md lists; none: the array has no such codes.
 Meanings meaningsOf(const std::string& array)
@@ -55,7 +56,8 @@ Meanings meaningsOf(const std::string& array)
   if (array == "Outcome")
   {
     return { { "barrier held", kBlue }, { "barrier broke", kRed }, { "recorded", kGrey },
-      { "stem broke", kOrange }, { "stem turned it", kGreen }, { "barrier struck", kPink } };
+      { "stem broke", kOrange }, { "stem turned it", kGreen }, { "barrier struck", kPink },
+      { "barrier passed", kYellow }, { "barrier gone", kSky } };
   }
   return {};
 }

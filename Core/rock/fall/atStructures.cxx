@@ -276,6 +276,11 @@ void meetBarrier(Fall& fall)
   fall.recorder.knot(body, false);
 }
 
+namespace
+{
+
+/// The one that the rock hits, in a step that would go to `end` and in which others have taken so
+/// much (J); returns what this one takes if it breaks.
 double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool touching)
 {
   RockBody& body = fall.body;
@@ -306,6 +311,26 @@ double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool to
   body.energy.structures += gone;
   breakBarrier(fall, at, energy, gone);
   return gone;
+}
+
+} // namespace
+
+bool passBarriersInStep(Fall& fall, bool touching)
+{
+  const RockBody& body = fall.body;
+  const BlockState end = body.state;
+  double lost = 0.0;
+  const Way way{ body.before, end, end.time - body.before.time, false };
+  fall.structures.findBarriers(way, fall.parameters.gravity, body.block.radius());
+  while (passBarriers(fall, way, lost))
+  {
+    lost += endStepAtBarrier(fall, end, lost, touching);
+    if (body.done)
+    {
+      return false;
+    }
+  }
+  return true;
 }
 
 } // namespace rockfall

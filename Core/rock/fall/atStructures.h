@@ -35,8 +35,8 @@ bool applyBroken(Fall& fall, const StructuresOnWay::Broken& broken);
 bool passBarriers(Fall& fall, const Way& way, double taken);
 bool holdsAtBarrier(const Fall& fall); ///< The one that it hits can hold it.
 void meetBarrier(Fall& fall);          ///< The one that it hits, where the rock is.
-/// The one that it hits, in a step of contact that would go to `end` and in which others have taken
-/// so much (J); returns what this one takes if it breaks.
-double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool touching);
+/// Those on the way of a step of contact that the rock has gone, or in soil. Whether the step goes on
+/// to its end: behind a barrier that breaks there may be others.
+bool passBarriersInStep(Fall& fall, bool touching);
 
 } // namespace rockfall

@@ -58,25 +58,6 @@ void keepAcceleration(Fall& fall)
   }
 }
 
-/// Behind a barrier that breaks there may be others. Whether the step goes on to its end.
-bool passBarriersInStep(Fall& fall, bool touching)
-{
-  const RockBody& body = fall.body;
-  const BlockState end = body.state;
-  double lost = 0.0;
-  const Way way{ body.before, end, end.time - body.before.time, false };
-  fall.structures.findBarriers(way, fall.parameters.gravity, body.block.radius());
-  while (passBarriers(fall, way, lost))
-  {
-    lost += endStepAtBarrier(fall, end, lost, touching);
-    if (body.done)
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
 void endContact(Fall& fall)
 {
   fall.inContact = false;

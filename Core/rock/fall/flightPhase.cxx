@@ -39,10 +39,33 @@ double timeToEdge(const Fall& fall)
   return remaining;
 }
 
+/// Soil brakes: where the rock has passed a barrier is known when it is there, as of a step of
+/// contact.
+void advanceInSoil(Fall& fall, double duration)
+{
+  RockBody& body = fall.body;
+  body.before = body.state;
+  body.springEnergyBefore = body.springEnergy;
+  flyThroughSoil(fall, duration);
+  body.state.time = body.before.time + duration;
+  if (fall.structures.hasBarriers() && !passBarriersInStep(fall, false))
+  {
+    return;
+  }
+  fall.recorder.recordBetween(body, body.before, body.state, false);
+  fall.recorder.follow(body.state);
+  fall.soil.forgetSlip(duration);
+}
+
 } // namespace
 
 void advanceInFlight(Fall& fall, double duration)
 {
+  if (fall.soil.scar().open())
+  {
+    advanceInSoil(fall, duration);
+    return;
+  }
   RockBody& body = fall.body;
   const BlockState start = body.state;
   BlockState reached = start;
@@ -55,25 +78,15 @@ void advanceInFlight(Fall& fall, double duration)
   }
   const double end = start.time + duration;
   BlockState at = start;
-  while (!fall.soil.scar().open() && fall.recorder.nextTime() <= end)
+  while (fall.recorder.nextTime() <= end)
   {
     at = fly(
       body.block, at, fall.parameters.gravity, std::max(0.0, fall.recorder.nextTime() - at.time));
     fall.recorder.record(body, at, false);
   }
-  if (fall.soil.scar().open())
-  {
-    flyThroughSoil(fall, duration);
-    body.state.time = end;
-    fall.recorder.recordBetween(body, start, body.state, false);
-    fall.recorder.follow(body.state);
-  }
-  else
-  {
-    body.state = fly(body.block, start, fall.parameters.gravity, duration);
-    body.state.time = end;
-    fall.recorder.followFlight(start, body.state);
-  }
+  body.state = fly(body.block, start, fall.parameters.gravity, duration);
+  body.state.time = end;
+  fall.recorder.followFlight(start, body.state);
   fall.soil.forgetSlip(duration);
   while (fall.structures.hasBarriers() && !body.done && fall.structures.hit().barrier >= 0)
   {

@@ -427,10 +427,12 @@ void StructuresOnWay::findBarriers(const Way& way, double gravity, double radius
       const Vec3 at = placeAt(s);
       const double reached = along.dot(at.head<2>() - piece.from) / along.squaredNorm();
       const double beside = std::max(kPieceEnd, radius / along.norm());
-      if (reached >= -(piece.begins ? beside : kPieceEnd) &&
-        reached <= 1.0 + (piece.ends ? beside : kPieceEnd))
+      const double pastBegin = -reached, pastEnd = reached - 1.0;
+      if (pastBegin <= (piece.begins ? beside : kPieceEnd) &&
+        pastEnd <= (piece.ends ? beside : kPieceEnd))
       {
-        passages_.push_back({ s, piece.barrier, int(&piece - obstacles_->barrierPieces().data()) });
+        passages_.push_back({ s, piece.barrier, int(&piece - obstacles_->barrierPieces().data()),
+          std::max(pastBegin, pastEnd) > kPieceEnd });
       }
     });
   if (passages_.empty())
@@ -462,6 +464,17 @@ void StructuresOnWay::findBarriers(const Way& way, double gravity, double radius
   passages_.erase(std::unique(passages_.begin(), passages_.end()), passages_.end());
 }
 
+double StructuresOnWay::footOf(int piece, const Eigen::Vector2d& at) const
+{
+  // On the edge of a wall it stands up there, from whichever side the rock comes.
+  const Obstacles::Piece& on = obstacles_->barrierPieces()[std::size_t(piece)];
+  const Eigen::Vector2d along = (on.to - on.from).normalized();
+  const Eigen::Vector2d across = kSamePlace * Eigen::Vector2d(-along.y(), along.x());
+  const Eigen::Vector2d one = at + across, other = at - across;
+  return std::max({ surface_->elevation(at.x(), at.y()),
+    obstacles_->embankmentTop(one.x(), one.y()), obstacles_->embankmentTop(other.x(), other.y()) });
+}
+
 void StructuresOnWay::passBarriers(const Way& way, double taken, double gravity,
   const RockBody& body, std::vector<StructureEvent>& events)
 {
@@ -470,26 +483,23 @@ void StructuresOnWay::passBarriers(const Way& way, double taken, double gravity,
   hit_ = {};
   while (passed_ < passages_.size())
   {
-    const auto [fraction, number, piece] = passages_[passed_];
+    const auto [fraction, number, piece, beyond] = passages_[passed_];
     if (way.flight && again && fraction > place)
     {
       return;
     }
     ++passed_;
-    if (std::find(brokenBarriers_.begin(), brokenBarriers_.end(), number) != brokenBarriers_.end())
-    {
-      continue;
-    }
     BlockState at = way.flight ? fly(body.block, way.from, gravity, fraction * way.duration)
                                : between(way.from, way.to, fraction);
     const Barrier& barrier = obstacles_->structures().barriers[std::size_t(number)];
-    const double foot = std::max(surface_->elevation(at.position.x(), at.position.y()),
-      obstacles_->embankmentTop(at.position.x(), at.position.y()));
-    const double height = at.position.z() - foot;
+    const double height = at.position.z() - this->footOf(piece, at.position.head<2>());
     const BarrierState state = stateOf(barrier, this->loadOf(number));
-    const BarrierMeets meets =
-      meetsOutline(*obstacles_, piece, state, brokenBarriers_, body.block, at, height);
-    if (meets == BarrierMeets::Nothing)
+    const bool gone =
+      std::find(brokenBarriers_.begin(), brokenBarriers_.end(), number) != brokenBarriers_.end();
+    const BarrierMeets meets = gone
+      ? BarrierMeets::Nothing
+      : meetsOutline(*obstacles_, piece, state, brokenBarriers_, body.block, at, height);
+    if (meets == BarrierMeets::Nothing && beyond)
     {
       continue;
     }
@@ -504,13 +514,15 @@ void StructuresOnWay::passBarriers(const Way& way, double taken, double gravity,
     const double came = rigidKineticEnergy(body.block, at);
     slowDown(at, came, std::min(taken, came));
     const double energy = rigidKineticEnergy(body.block, at) + stored;
-    StructureEvent event =
-      eventAt(barrier.records ? StructureOutcome::BarrierRecorded : StructureOutcome::BarrierStruck,
-        barrier.feature, at, energy, height);
-    if (!barrier.records)
+    const StructureOutcome outcome = gone ? StructureOutcome::BarrierGone
+      : meets == BarrierMeets::Nothing    ? StructureOutcome::BarrierPassed
+      : barrier.records                   ? StructureOutcome::BarrierRecorded
+                                          : StructureOutcome::BarrierStruck;
+    StructureEvent event = eventAt(outcome, barrier.feature, at, energy, height);
+    if (!barrier.records && !gone)
     {
       noteLoad(event, this->loadOf(number), state);
-      if (energy > state.capacity)
+      if (meets == BarrierMeets::Strikes && energy > state.capacity)
       {
         this->breakBarrier(number); // for others: nothing is taken of the rock
       }

@@ -90,8 +90,8 @@ public:
   /// Finds those whose line is passed, or its straight continuation as near to an end as the rock
   /// is wide (`radius`, m).
   void findBarriers(const Way& way, double gravity, double radius);
-  /// Goes on along this way, on which barriers have taken so much so far (J): notes what records,
-  /// and finds the first barrier that stops the rock or breaks, `hit`. After such a one flight goes
+  /// Goes on along this way, on which barriers have taken so much so far (J): notes what records or
+  /// lets the rock pass, and finds the first barrier that stops the rock or breaks, `hit`. After such a one flight goes
   /// on to those at the same place only; its rest is flown anew.
   void passBarriers(const Way& way, double taken, double gravity, const RockBody& body,
     std::vector<StructureEvent>& events);
@@ -117,6 +117,8 @@ public:
 
 private:
   void breakBarrier(int barrier);
+  /// Elevation of the foot of a piece of a barrier where a rock passes it, m.
+  double footOf(int piece, const Eigen::Vector2d& at) const;
 
   bool solid_ = false;
   bool barriers_ = false;

@@ -23,7 +23,8 @@ struct BarrierPassage
 {
   double fraction = 0.0; ///< Of the way; by rounding rather behind the line.
   int barrier = -1;
-  int piece = -1; ///< Of Obstacles::barrierPieces.
+  int piece = -1;      ///< Of Obstacles::barrierPieces.
+  bool beyond = false; ///< On the straight continuation of the line, beyond an end.
 
   /// Two pieces of a barrier meet at one place.
   bool operator==(const BarrierPassage& other) const

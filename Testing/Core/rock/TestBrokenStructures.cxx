@@ -78,7 +78,9 @@ TEST(BrokenStructures, NetIsGoneForTheNext)
     const Trajectory &breaks = runs[first ? 0 : 1], &follows = runs[first ? 1 : 0];
     ASSERT_EQ(breaks.structures.size(), 1u);
     EXPECT_EQ(breaks.structures[0].outcome, StructureOutcome::BarrierBroken);
-    EXPECT_TRUE(follows.structures.empty());
+    ASSERT_EQ(follows.structures.size(), 1u);
+    EXPECT_EQ(follows.structures[0].outcome, StructureOutcome::BarrierGone);
+    EXPECT_EQ(follows.structures[0].energyTaken, 0.0);
     EXPECT_EQ(follows.summary.fate, Fate::Moving);
     EXPECT_GT(follows.summary.stop.x(), 61.0);
   }
