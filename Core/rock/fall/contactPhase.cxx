@@ -410,9 +410,14 @@ void commitStep(Fall& fall, StepKind kind, const StepOutcome& outcome, double en
   // A soft block that is still being pressed together leaves its contacts and comes back to them:
   // it has taken off when it has not touched for a period of its own.
   fall.openTime = touching ? 0.0 : fall.openTime + taken;
-  if (lasting || (!touching && body.stiff && !fall.soil.scar().open()))
+  const bool off = !touching && body.stiff;
+  if (lasting || (off && !fall.soil.scar().open()))
   {
     fall.impact.finish(body, fall.recorder);
+  }
+  else if (off)
+  {
+    fall.impact.takeOff(body, fall.recorder);
   }
 }
 

@@ -31,8 +31,8 @@ bool sinkUnder(Fall& fall, double h)
   if (!fall.impact.pending())
   {
     fall.impact.begin(body, body.state, body.energy.friction, body.energy.restitution);
-    fall.impact.noteSink(*sink.under);
   }
+  fall.impact.noteSink(body, *sink.under);
   fall.impact.noteApproach(sink.approach);
   fall.soil.sink(sink, body, fall.ground);
   return true;

@@ -10,6 +10,13 @@
 namespace rockfall
 {
 
+namespace
+{
+
+constexpr std::uint64_t kNextHit = 0x9e3779b97f4a7c15ull; ///< To the key of the next one's draws.
+
+} // namespace
+
 double SlopeImpact::duration(const RockBody& body) const
 {
   return std::numbers::pi *
@@ -22,17 +29,48 @@ bool SlopeImpact::isWorthAnEvent(const RockBody& body) const
     parameters_.gravity, body.block.radius());
 }
 
+void SlopeImpact::Hit::add(const Vec3& by, double force, std::int64_t on)
+{
+  this->impulse += by;
+  if (force > this->largestForce)
+  {
+    this->largestForce = force;
+    this->cfe = on;
+  }
+}
+
+void SlopeImpact::beginHit(const BlockState& at)
+{
+  if (!hit_.underWay)
+  {
+    hit_ = Hit();
+    hit_.underWay = true;
+    hit_.velocity = at.velocity;
+  }
+}
+
+Vec3 SlopeImpact::hitNormal() const
+{
+  const double size = hit_.impulse.norm();
+  return size > 0.0 ? Vec3(hit_.impulse / size) : event_.normal;
+}
+
 bool SlopeImpact::breaks(const RockBody& body) const
 {
   const Fragmentation& law = parameters_.fragmentation;
-  const double normal = event_.normal.dot(event_.velocityBefore);
+  if (!law.on || !hit_.underWay)
+  {
+    return false;
+  }
+  const double normal = this->hitNormal().dot(hit_.velocity);
   const double density = body.block.mass() / body.block.volume();
   const Obstacles* obstacles = surface_.terrain().obstacles();
-  const bool onGround = !obstacles || event_.cfe < obstacles->firstCfe();
+  const std::int64_t cfe = hit_.largestForce > 0.0 ? hit_.cfe : event_.cfe;
+  const bool onGround = !obstacles || cfe < obstacles->firstCfe();
+  const std::uint64_t number = std::uint64_t(number_) << 32 | (impactsOver_ + 1);
   return onGround && body.block.volume() > law.leastVolume &&
     0.5 * density * normal * normal >= law.energy &&
-    !(surface_.drawTwo(Draw::Survival, std::uint64_t(number_) << 32 | impactsOver_)[0] <
-      law.survival);
+    !(surface_.drawTwo(Draw::Survival, number ^ hitsOver_ * kNextHit)[0] < law.survival);
 }
 
 bool SlopeImpact::resume(const RockBody& body, double time, Recorder& recorder)
@@ -63,6 +101,9 @@ void SlopeImpact::begin(
   event_ = ImpactEvent();
   event_.time = at.time;
   event_.velocityBefore = at.velocity;
+  hit_.underWay = false;
+  hitsOver_ = 0;
+  this->beginHit(at);
   normalImpulse_.setZero();
   largestForce_ = 0.0;
   frictionBefore_ = frictionBefore;
@@ -92,6 +133,7 @@ void SlopeImpact::follow(const RockBody& body, const BlockState& start, double h
           this->begin(body, start, body.energy.friction - outcome.frictionWork,
             body.energy.restitution - outcome.dampedWork);
         }
+        this->beginHit(start);
         this->noteApproach(approach);
       }
     }
@@ -105,6 +147,7 @@ void SlopeImpact::follow(const RockBody& body, const BlockState& start, double h
 void SlopeImpact::addImpulse(const Vec3& impulse, double force, std::int64_t cfe, const Vec3& place)
 {
   normalImpulse_ += impulse;
+  hit_.add(impulse, force, cfe);
   if (force > largestForce_)
   {
     largestForce_ = force;
@@ -119,11 +162,31 @@ void SlopeImpact::noteScar(double depth, double length)
   event_.scarLength = length;
 }
 
-void SlopeImpact::noteSink(const Contact& under)
+void SlopeImpact::noteSink(const RockBody& body, const Contact& under)
 {
-  event_.cfe = under.cfe;
-  event_.position = under.point;
-  event_.normal = under.normal;
+  hit_.underWay = hit_.underWay && hit_.largestForce > 0.0; // the rock has not come to Λ
+  this->beginHit(body.state);
+  if (largestForce_ == 0.0)
+  {
+    event_.cfe = under.cfe;
+    event_.position = under.point;
+    event_.normal = under.normal;
+  }
+}
+
+void SlopeImpact::takeOff(RockBody& body, Recorder& recorder)
+{
+  if (!pending_ || !hit_.underWay || !(hit_.largestForce > 0.0))
+  {
+    return;
+  }
+  if (this->breaks(body))
+  {
+    this->finish(body, recorder);
+    return;
+  }
+  hit_.underWay = false;
+  ++hitsOver_;
 }
 
 void SlopeImpact::finish(RockBody& body, Recorder& recorder, bool over, bool told)
@@ -133,6 +196,8 @@ void SlopeImpact::finish(RockBody& body, Recorder& recorder, bool over, bool tol
     return;
   }
   pending_ = false;
+  const bool broken = over && this->breaks(body);
+  const Vec3 normal = this->hitNormal();
   const GroundTouch touch = this->touchAt(event_.cfe, event_.position);
   ++impactsOver_;
   if (!this->isWorthAnEvent(body))
@@ -140,7 +205,9 @@ void SlopeImpact::finish(RockBody& body, Recorder& recorder, bool over, bool tol
     return;
   }
   event_.impulse = normalImpulse_.norm();
-  event_.normal = event_.impulse > 0.0 ? Vec3(normalImpulse_ / event_.impulse) : event_.normal;
+  event_.normal = broken   ? normal
+    : event_.impulse > 0.0 ? Vec3(normalImpulse_ / event_.impulse)
+                           : event_.normal;
   const int ground = surface_.restitutionClass(event_.cfe);
   event_.restitution = surface_.restitutionAt(touch);
   const double before = kineticEnergy(body.block, body.state);
@@ -150,7 +217,6 @@ void SlopeImpact::finish(RockBody& body, Recorder& recorder, bool over, bool tol
   const Vec3 after = over && !slowed_ ? adjustVelocity(material, event_, body.state.velocity, down)
                                       : body.state.velocity;
   slowed_ = slowed_ || after != body.state.velocity;
-  const bool broken = over && parameters_.fragmentation.on && this->breaks(body);
   const double kept = broken ? std::sqrt(1.0 - parameters_.fragmentation.loss) : 1.0;
   const bool jumps = !told &&
     (kept * after - body.state.velocity).norm() > kSameVelocity * body.state.velocity.norm();

@@ -4,6 +4,10 @@
 /// The impact of one rock on the slope that is under way: from the first touch until the rock takes
 /// off or settles. When it is over it is booked as an event, restitution of its velocity is applied,
 /// and the ground's next deviates are drawn.
+///
+/// In ground that yields an impact lasts as long as the rock is in its scar, where it may hit the
+/// hard surface Λ several times. Each hit breaks the rock by itself, or not, when the rock takes off
+/// from Λ.
 
 #include "rock/parameters.h"
 #include "rock/parts/Recorder.h"
@@ -58,8 +62,10 @@ public:
   /// `force` (N): the largest one tells where the impact was.
   void addImpulse(const Vec3& impulse, double force, std::int64_t cfe, const Vec3& place);
   void noteScar(double depth, double length);
-  /// Λ sinks under a contact; an impact that begins with it is there.
-  void noteSink(const Contact& under);
+  /// Λ sinks under a contact of this rock: a hit begins, and an impact that begins with it is there.
+  void noteSink(const RockBody& body, const Contact& under);
+  /// The rock is off Λ, but in the scar.
+  void takeOff(RockBody& body, Recorder& recorder);
   /// For how long it has been under way, s.
   double age(double time) const { return time - event_.time; }
   /// Others' deviates from here on, in the same impact.
@@ -70,8 +76,22 @@ public:
   void finish(RockBody& body, Recorder& recorder, bool over = true, bool told = false);
 
 private:
+  /// One against the hard surface.
+  struct Hit
+  {
+    bool underWay = false;
+    Vec3 velocity = Vec3::Zero(); ///< Before, m/s.
+    Vec3 impulse = Vec3::Zero();  ///< Normal, N s, world.
+    double largestForce = 0.0;    ///< N
+    std::int64_t cfe = 0;         ///< Where that was.
+
+    void add(const Vec3& by, double force, std::int64_t on);
+  };
+
   bool isWorthAnEvent(const RockBody& body) const;
-  bool breaks(const RockBody& body) const; ///< Whether the impact breaks the rock.
+  void beginHit(const BlockState& at);
+  Vec3 hitNormal() const;
+  bool breaks(const RockBody& body) const; ///< Whether the hit breaks the rock.
 
   const Surface& surface_;
   const SimulationParameters& parameters_;
@@ -82,6 +102,8 @@ private:
   bool pending_ = false;
   bool slowed_ = false;    ///< The velocity has been scaled for it.
   double lastTouch_ = 0.0; ///< s
+  Hit hit_;
+  std::uint32_t hitsOver_ = 0; ///< Of the impact.
   ImpactEvent event_;
   Vec3 normalImpulse_ = Vec3::Zero(); ///< N s, world.
   double largestForce_ = 0.0;         ///< N

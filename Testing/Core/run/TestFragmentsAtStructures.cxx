@@ -3,6 +3,7 @@
 #include "fragments.h"
 #include "law/settings.h"
 #include "run/brokenFall.h"
+#include "terrain/presets.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>
@@ -217,4 +218,86 @@ TEST(Fragmentation, ALookAtTheBeginningDoesNotTakeAllOfTheTime)
       EXPECT_LT(t.samples.back().time, enough + 1.0);
     }
   }
+}
+
+namespace
+{
+
+SurfaceMaterial evenGround(const char* preset)
+{
+  SurfaceMaterial ground = groundPreset(preset).material();
+  ground.restitutionDeviation = ground.yielding.deviation = 0.0;
+  return ground;
+}
+
+/// Of a rock that comes to `slope`, over its attitudes: how many broke, and the most time from the
+/// first touch to then, s.
+std::pair<int, double> breakingOn(const Terrain& slope, Rock rock, double energy, int attitudes)
+{
+  int broken = 0;
+  double latest = 0.0;
+  for (int k = 0; k < attitudes; ++k)
+  {
+    rock.orientation = Quat(1.0, 0.21 * k, 0.3, 0.2).normalized();
+    const auto all = runOf(slope, { rock }, lawOf(energy, 0.05));
+    const Trajectory& t = all[0];
+    if (t.summary.fate == Fate::Broken)
+    {
+      ++broken;
+      latest = std::max(latest, t.summary.endTime - t.impacts.back().time);
+    }
+  }
+  return { broken, latest };
+}
+
+Rock icosahedronAt(double height, const Vec3& velocity, double x)
+{
+  Rock rock = dropped(0.0);
+  rock.shape = makeShape(Shape::Icosahedron, 1.0);
+  rock.position = Vec3(x, 100.0, height);
+  rock.velocity = velocity;
+  return rock;
+}
+
+} // namespace
+
+/// A rock that digs a scar breaks when it takes off from the hard surface in it, not when it has left
+/// the scar, and whatever it meets thereafter.
+TEST(Fragmentation, OnSoftGroundARockBreaksWhereItHits)
+{
+  for (const char* preset : { "Meadow", "Talus", "Soil" })
+  {
+    SCOPED_TRACE(preset);
+    const double r = makeShape(Shape::Icosahedron, 1.0).radius();
+    for (const bool net : { false, true })
+    {
+      Terrain slope = makeSlope(
+        101, 2.0, [](double x, double) { return std::max(0.0, 0.35 * (100.0 - x)); },
+        evenGround(preset));
+      Structures s;
+      s.barriers = { netAt(100.0, 1e9) };
+      if (net)
+      {
+        slope.setStructures(s);
+      }
+      const double x = 98.0 - r;
+      const Rock rock = icosahedronAt(0.35 * (100.0 - x) + 1.2 * r, Vec3(9.0, 0.0, -14.0), x);
+      const auto [broken, latest] = breakingOn(slope, rock, 100e3, 8);
+      EXPECT_EQ(broken, 8);
+      EXPECT_LT(latest, 0.06); // the way to the bottom of a scar and back, at 13 m/s
+    }
+  }
+}
+
+/// Each hit in a scar breaks the rock by its own energy, or not: a rock that grazes the level at
+/// 2 m/s and comes to a counter slope of 45° at 11 m/s across it, 160 kJ/m³.
+TEST(Fragmentation, EachHitInAScarIsJudgedByItself)
+{
+  const double r = makeShape(Shape::Icosahedron, 1.0).radius();
+  const Terrain slope = makeSlope(
+    401, 0.5, [](double x, double) { return std::max(0.0, x - 100.0); }, evenGround("Talus"));
+  const Rock rock = icosahedronAt(1.02 * r, Vec3(18.0, 0.0, -2.0), 98.0 - 0.414 * r);
+  EXPECT_GE(breakingOn(slope, rock, 60e3, 10).first, 9);
+  EXPECT_GE(breakingOn(slope, rock, 100e3, 10).first, 8);
+  EXPECT_EQ(breakingOn(slope, rock, 250e3, 10).first, 0);
 }
