@@ -4,7 +4,6 @@
 #include "base/text/numberText.h"
 #include "statistics/sample.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -42,70 +41,6 @@ int intensityClass(std::span<const double> frequencies, double period)
     reached += frequency * period >= 1.0 - rounding ? 1 : 0;
   }
   return reached;
-}
-
-void RockFrequencies::add(int rock, std::int64_t blockId, double frequency)
-{
-  this->add(rock, blockId, { frequency, 1 });
-}
-
-void RockFrequencies::add(int rock, std::int64_t blockId, const Release& release)
-{
-  const auto name = [&]
-  {
-    return "The Frequency of rock " + std::to_string(rock) + " is " +
-      numberText(release.frequency) + " per year";
-  };
-  if (!(release.frequency >= 0.0) || !std::isfinite(release.frequency))
-  {
-    throw DataError(name() + ", it must be finite and not negative");
-  }
-  const auto [at, isNew] = releases_.try_emplace({ rock, blockId });
-  Release& known = at->second;
-  if (!isNew && known.frequency != release.frequency)
-  {
-    throw DataError(
-      name() + " in one iteration and " + numberText(known.frequency) + " in another");
-  }
-  known.frequency = release.frequency;
-  known.iterations += release.iterations;
-}
-
-void RockFrequencies::release(int rock, std::int64_t blockId)
-{
-  const auto found = releases_.find({ rock, blockId });
-  if (found != releases_.end())
-  {
-    ++found->second.iterations;
-  }
-}
-
-void RockFrequencies::add(const RockFrequencies& other)
-{
-  for (const auto& [rock, release] : other.releases_)
-  {
-    this->add(rock.first, rock.second, release);
-  }
-}
-
-double RockFrequencies::largestWeight() const
-{
-  double largest = 0.0;
-  for (const auto& [rock, release] : releases_)
-  {
-    largest = std::max(largest, release.frequency / double(release.iterations));
-  }
-  return largest;
-}
-
-double RockFrequencies::weight(const Passage& of) const
-{
-  const auto found = releases_.find({ of.rock, of.blockId });
-  if (found == releases_.end())
-  {
-    throw DataError("Rock " + std::to_string(of.rock) + " has no Frequency");
-  }
-  return found->second.frequency / double(found->second.iterations);
 }
 
 void FrequencyRange::add(double frequency)

@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -33,38 +32,6 @@ double probabilityWithin(double frequency, double years);
 /// (a): 0 none, 1 reach alone, and one more per threshold. A part in 10⁹ is rounding, so that ten
 /// rocks of 0.001 a year make a hundred years.
 int intensityClass(std::span<const double> frequencies, double period);
-
-/// Annual frequencies of the rocks of a release, known by number and block. What a rock's passages
-/// in one iteration weigh is its frequency over the iterations that released it.
-class RockFrequencies
-{
-public:
-  /// A trajectory of a rock of this frequency, 1/a. Throws DataError if it is negative or not
-  /// finite, or another one than the same rock had before.
-  void add(int rock, std::int64_t blockId, double frequency);
-  /// Another iteration that released a rock; nothing where its frequency is not known.
-  void release(int rock, std::int64_t blockId);
-  /// Those of another part of the run. Throws DataError as above.
-  void add(const RockFrequencies& other);
-  /// Of one trajectory, 1/a. Throws DataError for a rock that was not added.
-  double weight(const Passage& of) const;
-  /// The largest weight of a rock, 1/a.
-  double largestWeight() const;
-  bool empty() const { return releases_.empty(); }
-
-  struct Release
-  {
-    double frequency = 0.0; ///< 1/a
-    std::int64_t iterations = 0;
-  };
-  /// By number and block.
-  const std::map<std::pair<int, std::int64_t>, Release>& releases() const { return releases_; }
-  /// Likewise of so many iterations, which may be none yet.
-  void add(int rock, std::int64_t blockId, const Release& release);
-
-private:
-  std::map<std::pair<int, std::int64_t>, Release> releases_;
-};
 
 /// The note where rocks have frequencies of their own, but AnnualFrequency (1/a) goes before them.
 std::string ownNotUsed(double annualFrequency);

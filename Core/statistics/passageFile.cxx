@@ -141,56 +141,37 @@ void readLost(std::istream& in, PassageFile& file)
   }
 }
 
-void readFrequencies(std::istream& in, PassageFile& file)
+void readRocks(std::istream& in, PassageFile& file)
 {
   const auto rocks = get<std::uint64_t>(in);
   for (std::uint64_t k = 0; k < rocks && in; ++k)
   {
     const auto rock = get<std::int64_t>(in);
     const auto block = get<std::int64_t>(in);
-    RockFrequencies::Release release;
-    release.iterations = get<std::int64_t>(in);
-    release.frequency = get<double>(in);
+    RockRelease release{ get<std::int64_t>(in) };
+    const auto source = get<std::int64_t>(in);
+    const auto frequency = get<double>(in);
     if (!in)
     {
       return; // told by the length
     }
     if (rock < 0 || rock > std::numeric_limits<int>::max() || release.iterations < 1 ||
-      release.iterations > std::numeric_limits<int>::max() || !(release.frequency >= 0.0) ||
-      !std::isfinite(release.frequency) ||
-      file.frequencies.releases().contains({ int(rock), block }))
+      release.iterations > std::numeric_limits<int>::max() || frequency < 0.0 ||
+      std::isinf(frequency) || file.rocks.all().contains({ int(rock), block }))
     {
       failDamaged(file.fileName,
         "rock " + std::to_string(rock) + " of " + std::to_string(release.iterations) +
-          " iterations has the frequency " + numberText(release.frequency));
+          " iterations has the frequency " + numberText(frequency));
     }
-    file.frequencies.add(int(rock), block, release);
-  }
-}
-
-void readSources(std::istream& in, PassageFile& file)
-{
-  const auto rocks = get<std::uint64_t>(in);
-  for (std::uint64_t k = 0; k < rocks && in; ++k)
-  {
-    const auto rock = get<std::int64_t>(in);
-    const auto block = get<std::int64_t>(in);
-    RockSources::Release release;
-    release.source = get<std::int64_t>(in);
-    release.iterations = get<std::int64_t>(in);
-    if (!in)
+    if (source != kSourceNotKnown)
     {
-      return; // told by the length
+      release.source = source;
     }
-    if (rock < 0 || rock > std::numeric_limits<int>::max() || release.iterations < 1 ||
-      release.iterations > std::numeric_limits<int>::max() ||
-      file.sources.releases().contains({ int(rock), block }))
+    if (!std::isnan(frequency))
     {
-      failDamaged(file.fileName,
-        "the source of rock " + std::to_string(rock) + " released it in " +
-          std::to_string(release.iterations) + " iterations");
+      release.frequency = frequency;
     }
-    file.sources.add(int(rock), block, release);
+    file.rocks.add(int(rock), block, release);
   }
 }
 
@@ -337,8 +318,7 @@ PassageFile readPassageFile(const std::string& fileName)
   file.run.properties = getText(in);
   readReleases(in, file);
   readLost(in, file);
-  readFrequencies(in, file);
-  readSources(in, file);
+  readRocks(in, file);
   file.passages = get<std::uint64_t>(in);
   if (!in || !readParts(in, size, file))
   {
@@ -367,18 +347,18 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
       throw DataError(fileName + ": its cells or its CRS are not those of " + fileNames.front());
     }
     if (!file.releases.empty() && !releases_.empty() &&
-      file.frequencies.empty() != frequencies_.empty())
+      file.rocks.haveFrequencies() != rocks_.haveFrequencies())
     {
       throw DataError(fileName + ": its rocks have " +
-        (file.frequencies.empty() ? "no frequencies, those of other files have"
-                                  : "frequencies, those of other files have none"));
+        (file.rocks.haveFrequencies() ? "frequencies, those of other files have none"
+                                      : "no frequencies, those of other files have"));
     }
     for (const auto& [iteration, count] : file.releases)
     {
       releases_[iteration] += count;
     }
     lost_.add(file.lost);
-    frequencies_.add(file.frequencies);
+    rocks_.add(file.rocks);
   }
   std::vector<RunOrigin> runs;
   for (const PassageFile& file : files_)
@@ -386,16 +366,6 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
     runs.push_back(file.run);
   }
   notes_ = askAfterRuns(runs, [this](std::size_t k) { return files_[k].fileName; });
-}
-
-RockSources PassageFiles::sources() const
-{
-  RockSources all;
-  for (const PassageFile& file : files_)
-  {
-    all.add(file.sources);
-  }
-  return all;
 }
 
 void PassageFiles::forEach(const std::function<void(const Passage&)>& use) const

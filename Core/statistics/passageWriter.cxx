@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 namespace rockfall
 {
@@ -70,9 +71,10 @@ void putPassages(std::ostream& out, const std::vector<Passage>& passages)
 } // namespace
 
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
-  const std::string& fileName, const LostRocks& lost, const RockFrequencies& frequencies,
-  const RunOrigin& run, const RockSources& sources)
+  const std::string& fileName, const LostRocks& lost, const RockReleases& rocks,
+  const RunOrigin& run)
 {
+  rocks.requireOneSource();
   gis::OutputFile file(fileName);
   std::ofstream out(file.temporary(), std::ios::binary);
   const CellGrid& grid = raster.grid();
@@ -100,22 +102,15 @@ void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& 
   }
   put(out, lost.endTime);
   put(out, lost.pieces);
-  put(out, std::uint64_t(frequencies.releases().size()));
-  for (const auto& [rock, release] : frequencies.releases())
+  put(out, std::uint64_t(rocks.all().size()));
+  for (const auto& [rock, release] : rocks.all())
   {
-    put(out, std::int64_t(rock.first));
-    put(out, rock.second);
-    put(out, release.iterations);
-    put(out, release.frequency);
-  }
-  put(out, std::uint64_t(sources.releases().size()));
-  for (const auto& [rock, release] : sources.releases())
-  {
-    for (const std::int64_t number :
-      { std::int64_t(rock.first), rock.second, release.source, release.iterations })
+    for (const std::int64_t number : { std::int64_t(rock.first), rock.second, release.iterations,
+           release.source.value_or(kSourceNotKnown) })
     {
       put(out, number);
     }
+    put(out, release.frequency.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
   const std::vector<Passage>& passages = raster.sorted();
   put(out, std::uint64_t(passages.size()));

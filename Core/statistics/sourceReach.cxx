@@ -8,36 +8,19 @@
 namespace rockfall
 {
 
-void RockSources::add(int rock, std::int64_t blockId, const Release& release)
+SourceReach::SourceReach(const RockReleases& releases)
 {
-  Release& known = releases_[{ rock, blockId }];
-  if (known.iterations > 0 && known.source != release.source)
-  {
-    throw DataError("Rock " + std::to_string(rock) + " (block " + std::to_string(blockId) +
-      ") is of the source " + std::to_string(release.source) + " in one iteration and of " +
-      std::to_string(known.source) + " in another");
-  }
-  known.source = release.source;
-  known.iterations += release.iterations;
-}
-
-void RockSources::add(const RockSources& other)
-{
-  for (const auto& [rock, release] : other.releases_)
-  {
-    this->add(rock.first, rock.second, release);
-  }
-}
-
-SourceReach::SourceReach(const RockSources& sources)
-{
+  releases.requireOneSource();
   std::map<std::int64_t, std::size_t> numbers;
-  for (const auto& [rock, release] : sources.releases())
+  for (const auto& [rock, release] : releases.all())
   {
-    const std::size_t number = numbers.try_emplace(release.source, numbers.size()).first->second;
-    sources_.resize(numbers.size());
-    sources_[number].released += release.iterations;
-    sourceOf_.emplace(rock, number);
+    if (release.source)
+    {
+      const auto number = numbers.try_emplace(*release.source, numbers.size()).first->second;
+      sources_.resize(numbers.size());
+      sources_[number].released += release.iterations;
+      sourceOf_.emplace(rock, number);
+    }
   }
 }
 

@@ -3,7 +3,7 @@
 /// @file
 /// How large a share of the rocks of a source comes to a cell.
 
-#include "statistics/passages.h"
+#include "statistics/rockReleases.h"
 
 #include <cstdint>
 #include <map>
@@ -13,33 +13,13 @@
 namespace rockfall
 {
 
-/// Sources of the rocks of a release, known by number and block.
-class RockSources
-{
-public:
-  struct Release
-  {
-    std::int64_t source = 0;
-    std::int64_t iterations = 0; ///< That released the rock.
-  };
-  /// Throws DataError if the same rock had another source before.
-  void add(int rock, std::int64_t blockId, const Release& release);
-  /// Those of another part of the run. Throws DataError as above.
-  void add(const RockSources& other);
-  bool empty() const { return releases_.empty(); }
-  /// By number and block.
-  const std::map<std::pair<int, std::int64_t>, Release>& releases() const { return releases_; }
-
-private:
-  std::map<std::pair<int, std::int64_t>, Release> releases_;
-};
-
 /// Of the passages of one cell, the largest share over the sources: rocks of a source that came
 /// over all of its releases. Rocks of other sources change nothing.
 class SourceReach
 {
 public:
-  explicit SourceReach(const RockSources& sources);
+  /// Throws DataError if a rock has two sources.
+  explicit SourceReach(const RockReleases& releases);
 
   /// Throws DataError for a rock whose source is not known.
   void add(const Passage& passage);

@@ -55,54 +55,53 @@ std::vector<double> joulesOf(const FrequencyOptions& options)
   return joules;
 }
 
-/// Calls use(number, block, value of the array) for each rock of each iteration; not at all without
-/// the array.
-template <typename Use>
-void forReleases(vtkPolyData* trajectories, const char* name, Use&& use)
+/// An array of one component; null without it.
+vtkDataArray* singleArray(vtkCellData* cells, const char* name)
 {
-  vtkCellData* cells = trajectories->GetCellData();
   vtkDataArray* array = cells->GetArray(name);
-  vtkDataArray* rock = cells->GetArray("RockId");
-  vtkDataArray* block = cells->GetArray("BlockId");
-  if (!array || !rock || !block)
-  {
-    return;
-  }
-  if (array->GetNumberOfComponents() != 1)
+  if (array && array->GetNumberOfComponents() != 1)
   {
     throw DataError("The cell array " + std::string(name) + " of the Input has " +
       std::to_string(array->GetNumberOfComponents()) + " components, it must have 1");
   }
-  // A rock is released once, whatever it breaks into.
-  vtkDataArray* piece = cells->GetArray("Piece");
-  // Polydata's cells begin with its vertices.
-  const vtkIdType first = trajectories->GetNumberOfVerts();
-  for (vtkIdType line = first; line < first + trajectories->GetNumberOfLines(); ++line)
-  {
-    if (!piece || piece->GetTuple1(line) == 0.0)
-    {
-      use(int(rock->GetTuple1(line)), std::int64_t(block->GetTuple1(line)), array->GetTuple1(line));
-    }
-  }
+  return array;
 }
 
 } // namespace
 
-RockFrequencies frequenciesOf(vtkPolyData* trajectories)
+RockReleases rocksOf(vtkPolyData* trajectories, bool frequencies, bool sources)
 {
-  RockFrequencies result;
-  forReleases(trajectories, "Frequency",
-    [&](int rock, std::int64_t block, double frequency) { result.add(rock, block, frequency); });
-  return result;
-}
-
-RockSources sourcesOf(vtkPolyData* trajectories)
-{
-  RockSources result;
-  forReleases(trajectories, "SourceId",
-    [&](int rock, std::int64_t block, double source) {
-      result.add(rock, block, { std::int64_t(source), 1 });
-    });
+  RockReleases result;
+  vtkCellData* cells = trajectories->GetCellData();
+  vtkDataArray* rock = cells->GetArray("RockId");
+  vtkDataArray* block = cells->GetArray("BlockId");
+  if (!rock || !block)
+  {
+    return result;
+  }
+  vtkDataArray* frequency = frequencies ? singleArray(cells, "Frequency") : nullptr;
+  vtkDataArray* source = sources ? singleArray(cells, "SourceId") : nullptr;
+  // A rock is released once, whatever it breaks into.
+  vtkDataArray* piece = cells->GetArray("Piece");
+  // Polydata's cells begin with its vertices.
+  const vtkIdType first = trajectories->GetNumberOfVerts();
+  const vtkIdType lines = frequency || source ? trajectories->GetNumberOfLines() : 0;
+  for (vtkIdType line = first; line < first + lines; ++line)
+  {
+    if (!piece || piece->GetTuple1(line) == 0.0)
+    {
+      RockRelease release;
+      if (frequency)
+      {
+        release.frequency = frequency->GetTuple1(line);
+      }
+      if (source)
+      {
+        release.source = std::int64_t(source->GetTuple1(line));
+      }
+      result.add(int(rock->GetTuple1(line)), std::int64_t(block->GetTuple1(line)), release);
+    }
+  }
   return result;
 }
 
@@ -117,8 +116,8 @@ void checkFrequencies(const FrequencyOptions& options)
 }
 
 FrequencyLayers::FrequencyLayers(const FrequencyOptions& options, double released,
-  const RockFrequencies& rocks, std::function<bool(std::uint32_t)> isLeftOut, vtkImageData* image)
-  : known_(options.annualFrequency > 0.0 || !rocks.empty())
+  const RockReleases& rocks, std::function<bool(std::uint32_t)> isLeftOut, vtkImageData* image)
+  : known_(options.annualFrequency > 0.0 || rocks.haveFrequencies())
   , released_(released)
   , periods_(ordered(options.returnPeriods))
   , isLeftOut_(std::move(isLeftOut))

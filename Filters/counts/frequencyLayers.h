@@ -1,11 +1,10 @@
 #pragma once
 
 /// @file
-/// Arrays of annual frequencies and intensity classes of a map of hazards; frequencies and sources
-/// of rocks.
+/// Arrays of annual frequencies and intensity classes of a map of hazards; the releases of rocks.
 
 #include "statistics/frequency.h"
-#include "statistics/sourceReach.h"
+#include "statistics/rockReleases.h"
 
 #include "vtkSmartPointer.h"
 
@@ -32,11 +31,9 @@ struct FrequencyOptions
 /// Throws ParameterError that names the property and its value.
 void checkFrequencies(const FrequencyOptions& options);
 
-/// By the cell array Frequency of trajectories; empty without one. Throws DataError for a bad one.
-RockFrequencies frequenciesOf(vtkPolyData* trajectories);
-
-/// By the cell array SourceId of trajectories; empty without one. Throws DataError if a rock has two.
-RockSources sourcesOf(vtkPolyData* trajectories);
+/// Rocks by the cell arrays of trajectories that are asked for, Frequency and SourceId; empty
+/// without them. Throws DataError for a bad one.
+RockReleases rocksOf(vtkPolyData* trajectories, bool frequencies, bool sources);
 
 /// The arrays of a map; none where frequencies are not known.
 class FrequencyLayers
@@ -44,7 +41,7 @@ class FrequencyLayers
 public:
   /// Adds them to the cells of `image`. `released`: rocks × iterations. `rocks` is kept. A cell for
   /// which `isLeftOut` stays empty.
-  FrequencyLayers(const FrequencyOptions& options, double released, const RockFrequencies& rocks,
+  FrequencyLayers(const FrequencyOptions& options, double released, const RockReleases& rocks,
     std::function<bool(std::uint32_t)> isLeftOut, vtkImageData* image);
 
   /// Passages in their order.

@@ -13,6 +13,7 @@
 #include "shared/terrainFieldData.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
+#include "statistics/sourceReach.h"
 #include "terrain/plausible.h"
 
 #include "vtkCellData.h"
@@ -381,10 +382,10 @@ namespace
 {
 
 /// The map but for its heights and coordinate system. `corner`: the
-/// south-western one, in the world. `sources`: asked for if LeastReach is.
+/// south-western one, in the world.
 void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& releases, bool withTerrain,
-  const LostRocks& lost, const HazardMapOptions& options, const RockFrequencies& frequencies,
-  const std::function<RockSources()>& sources, std::vector<std::string> notes,
+  const LostRocks& lost, const HazardMapOptions& options, const RockReleases& rocks,
+  std::vector<std::string> notes,
   const std::function<void(const std::function<void(const Passage&)>&)>& forEach,
   vtkImageData* image)
 {
@@ -396,12 +397,15 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
   Layers layers(image, options, releases);
   // A cell's summary comes before its frequencies.
   FrequencyLayers frequencyLayers(
-    options.frequency, released, frequencies,
-    [&layers](std::uint32_t) { return layers.isLeftOut(); }, image);
-  const RockSources known = options.leastReach > 0.0 ? sources() : RockSources();
-  SourceReach reach(known);
+    options.frequency, released, rocks, [&layers](std::uint32_t) { return layers.isLeftOut(); },
+    image);
+  std::optional<SourceReach> reach;
+  if (options.leastReach > 0.0 && rocks.haveSources())
+  {
+    reach.emplace(rocks);
+  }
   const UseCell set = [&](const CellSummary& cell)
-  { layers.set(cell, known.empty() ? cell.reach : reach.take()); };
+  { layers.set(cell, reach ? reach->take() : cell.reach); };
   CellSummarizer summarizer(releases, set);
   forEach(
     [&](const Passage& passage)
@@ -410,9 +414,9 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
       {
         summarizer.add(passage);
         frequencyLayers.add(passage);
-        if (!known.empty())
+        if (reach)
         {
-          reach.add(passage); // behind the summary of the cell before
+          reach->add(passage); // behind the summary of the cell before
         }
       }
     });
@@ -516,8 +520,8 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   fillImage(
     grid, origin + Vec3(grid.west, grid.south, 0.0), raster.releases(), terrain.has_value(),
     lostOf(trajectories), options,
-    options.frequency.annualFrequency > 0.0 ? RockFrequencies() : frequenciesOf(trajectories),
-    [&] { return sourcesOf(trajectories); }, notes,
+    rocksOf(trajectories, options.frequency.annualFrequency <= 0.0, options.leastReach > 0.0),
+    std::move(notes),
     [&raster](const std::function<void(const Passage&)>& use)
     {
       for (const Passage& passage : raster.sorted())
@@ -544,13 +548,13 @@ void makeHazardImage(
   const CellGrid& grid = files.grid();
   checkSize(grid.columns, grid.rows, grid.cellSize);
   std::vector<std::string> notes = files.notes();
-  if (options.frequency.annualFrequency > 0.0 && !files.frequencies().empty())
+  if (options.frequency.annualFrequency > 0.0 && files.rocks().haveFrequencies())
   {
     notes.push_back(ownNotUsed(options.frequency.annualFrequency));
   }
   fillImage(
     grid, Vec3(grid.west, grid.south, 0.0), files.releases(), true, files.lost(), options,
-    files.frequencies(), [&] { return files.sources(); }, std::move(notes),
+    files.rocks(), std::move(notes),
     [&files](const std::function<void(const Passage&)>& use) { files.forEach(use); }, image);
   writeCoordinateSystem(files.crs(), files.origin(), image->GetFieldData());
 }
@@ -572,8 +576,7 @@ void writeHazardPassages(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
     showNote(note);
   }
   writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName,
-    lostOf(trajectories), frequenciesOf(trajectories), runOf(trajectories),
-    sourcesOf(trajectories));
+    lostOf(trajectories), rocksOf(trajectories, true, true), runOf(trajectories));
 }
 
 } // namespace rockfall::filters

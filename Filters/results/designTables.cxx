@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "shared/columns.h"
-#include "statistics/frequency.h"
+#include "statistics/rockReleases.h"
 #include "statistics/sample.h"
 
 #include "vtkDataSetAttributes.h"
@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -25,22 +24,18 @@ namespace
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Frequencies of the rocks, by number and block; nothing without the array.
-std::optional<RockFrequencies> frequenciesOf(const MergedCrossings& merged, vtkDataArray* frequency)
+/// The rocks with their frequencies.
+RockReleases rocksOf(const MergedCrossings& merged, vtkDataArray* frequency)
 {
-  if (!frequency)
+  RockReleases result;
+  for (const CollectedRock& rock : merged.released)
   {
-    return std::nullopt;
+    result.add(rock.rock, rock.blockId, {});
   }
-  RockFrequencies result;
   for (std::size_t k = 0; k < merged.crossings.size(); ++k)
   {
     const Crossing& c = merged.crossings[k];
-    result.add(c.rock, c.blockId, { frequency->GetTuple1(vtkIdType(k)), 0 });
-  }
-  for (const CollectedRock& rock : merged.released)
-  {
-    result.release(rock.rock, rock.blockId); // of one that passes no line nothing is asked
+    result.add(c.rock, c.blockId, { 0, frequency->GetTuple1(vtkIdType(k)) });
   }
   return result;
 }
@@ -100,7 +95,8 @@ std::vector<DesignLine> designLines(
   vtkPointData* data = points->GetPointData();
   vtkDataArray *source = data->GetArray("SourceId"), *frequency = data->GetArray("Frequency");
   const bool together = annualFrequency > 0.0;
-  const auto rocks = together ? std::nullopt : frequenciesOf(merged, frequency);
+  const bool own = frequency && !together;
+  const RockReleases rocks = own ? rocksOf(merged, frequency) : RockReleases();
   const double share = together ? annualFrequency / double(merged.released.size()) : kNan;
   std::vector<const Crossing*> last(lines.size()); // of each line
   for (std::size_t k = 0; k < merged.crossings.size(); ++k)
@@ -123,7 +119,7 @@ std::vector<DesignLine> designLines(
       of.blockId = c.blockId;
       lines[std::size_t(c.line)].passings.push_back(
         { source ? std::int64_t(source->GetTuple1(id)) : -1, c.kineticEnergy, c.velocity.norm(),
-          c.top, rocks ? rocks->weight(of) : share });
+          c.top, own ? rocks.weight(of) : share });
     }
   }
   return lines;

@@ -36,7 +36,7 @@ std::vector<std::string> pointTables()
 
 std::vector<std::string> passages()
 {
-  std::string file = "RFPASS07" + bytesOf(std::int32_t(4)) + bytesOf(std::int32_t(3));
+  std::string file = "RFPASS08" + bytesOf(std::int32_t(4)) + bytesOf(std::int32_t(3));
   for (const double value : { 5.0, 0.0, 0.0, 0.0, 0.0, 0.0 })
   {
     file += bytesOf(value);
@@ -49,9 +49,8 @@ std::vector<std::string> passages()
     file += bytesOf(lost);
   }
   file += bytesOf(60.0) + bytesOf(std::int64_t(0)) + bytesOf(std::uint64_t(1)) +
-    bytesOf(std::int64_t(0)) + bytesOf(std::int64_t(7)) + bytesOf(std::int64_t(1)) + bytesOf(0.25) +
-    bytesOf(std::uint64_t(1)) + bytesOf(std::int64_t(0)) + bytesOf(std::int64_t(7)) +
-    bytesOf(std::int64_t(3)) + bytesOf(std::int64_t(1)) + bytesOf(std::uint64_t(2)) +
+    bytesOf(std::int64_t(0)) + bytesOf(std::int64_t(7)) + bytesOf(std::int64_t(1)) +
+    bytesOf(std::int64_t(3)) + bytesOf(0.25) + bytesOf(std::uint64_t(2)) +
     bytesOf(std::uint32_t(80)); // not packed
   for (const int rock : { 0, 1 })
   {

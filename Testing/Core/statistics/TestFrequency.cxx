@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/frequency.h"
+#include "statistics/rockReleases.h"
 
 #include <gtest/gtest.h>
 
@@ -36,14 +37,14 @@ Passage passageOf(std::uint32_t cell, int iteration, int rock, double energy)
 constexpr std::array<double, 10> yearly = { 0.25, 0.25, 0.0625, 0.0625, 0.015625, 0.25, 0.25, 0.25,
   0.0625, 0.015625 };
 
-RockFrequencies release()
+RockReleases release()
 {
-  RockFrequencies rocks;
+  RockReleases rocks;
   for (int iteration = 0; iteration < 2; ++iteration)
   {
     for (int rock = 0; rock < 10; ++rock)
     {
-      rocks.add(rock, 0, yearly[std::size_t(rock)]);
+      rocks.add(rock, 0, { .frequency = yearly[std::size_t(rock)] });
     }
   }
   return rocks;
@@ -61,7 +62,7 @@ std::vector<Passage> passages()
 }
 
 std::vector<CellFrequency> cellsOf(const std::vector<Passage>& sorted,
-  const std::vector<double>& thresholds, const RockFrequencies& rocks = release())
+  const std::vector<double>& thresholds, const RockReleases& rocks = release())
 {
   std::vector<CellFrequency> cells;
   FrequencySummarizer summarizer(
@@ -92,7 +93,7 @@ TEST(Frequency, RocksOfOneSampleThatDiffer)
   // Each cell by itself: two sources that do not meet are no reason for a note.
   const auto differing = [](std::initializer_list<Passage> passed)
   {
-    const RockFrequencies rocks = release();
+    const RockReleases rocks = release();
     FrequencySummarizer summarizer(
       {}, [&](const Passage& passage) { return rocks.weight(passage); },
       [](const CellFrequency&) {});
@@ -155,10 +156,10 @@ TEST(Frequency, PartsGiveTheSameBits)
 {
   // Frequencies that are no sums of powers of two: the order of the sum shows in the last bit.
   std::vector<Passage> all;
-  RockFrequencies rocks;
+  RockReleases rocks;
   for (int rock = 0; rock < 50; ++rock)
   {
-    rocks.add(rock, 0, 0.1 / (rock + 3));
+    rocks.add(rock, 0, { .frequency = 0.1 / (rock + 3) });
     all.push_back(passageOf(std::uint32_t(rock % 2), 0, rock, rock * 10 * kJ));
   }
   const auto of = [&rocks](std::vector<Passage> parts)
@@ -206,12 +207,12 @@ TEST(Frequency, ProbabilityWithinYears)
 
 TEST(Frequency, BadFrequencies)
 {
-  RockFrequencies rocks;
-  rocks.add(1, 0, 0.5);
-  rocks.add(1, 9, 0.125); // of another run
+  RockReleases rocks;
+  rocks.add(1, 0, { .frequency = 0.5 });
+  rocks.add(1, 9, { .frequency = 0.125 }); // of another run
   EXPECT_EQ(rocks.weight(passageOf(0, 0, 1, 0.0)), 0.5);
-  EXPECT_THROW(rocks.add(1, 0, 0.25), DataError);
-  EXPECT_THROW(rocks.add(2, 0, -1.0), DataError);
-  EXPECT_THROW(rocks.add(2, 0, std::nan("")), DataError);
+  EXPECT_THROW(rocks.add(1, 0, { .frequency = 0.25 }), DataError);
+  EXPECT_THROW(rocks.add(2, 0, { .frequency = -1.0 }), DataError);
+  EXPECT_THROW(rocks.add(2, 0, { .frequency = std::nan("") }), DataError);
   EXPECT_THROW(rocks.weight(passageOf(0, 0, 7, 0.0)), DataError);
 }

@@ -7,6 +7,7 @@
 #include "gis/base/packing.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
+#include "statistics/sourceReach.h"
 #include "summarizePassages.h"
 
 #include <gtest/gtest.h>
@@ -362,7 +363,7 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   };
   const double inf = std::numeric_limits<double>::infinity();
   constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 88, count = 104, lost = 112,
-                        firstPassage = 196;
+                        firstPassage = 188;
   put(8, std::int32_t(-4));
   expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
   put(8, std::int32_t(2147483647));
@@ -409,22 +410,23 @@ TEST_F(TestPassageFile, FrequenciesAreThoseOfAllFiles)
   for (int part = 0; part < 3; ++part)
   {
     HazardRaster raster = rasterOf([&](int k) { return k % 3 == part; });
-    RockFrequencies known;
+    RockReleases known;
     for (int k = part; k < 60; k += 3)
     {
-      known.add(k % 10, 0, 0.25 / (1 + k % 10));
+      known.add(k % 10, 0, { .frequency = 0.25 / (1 + k % 10) });
     }
     names.push_back(fileName(std::to_string(part)));
     writePassages(raster, origin, "", names.back(), {}, known);
   }
   const PassageFiles files(names);
-  ASSERT_EQ(files.frequencies().releases().size(), 10u);
-  for (const auto& [rock, release] : files.frequencies().releases())
+  ASSERT_EQ(files.rocks().all().size(), 10u);
+  for (const auto& [rock, release] : files.rocks().all())
   {
     EXPECT_EQ(release.iterations, 6);
     EXPECT_EQ(release.frequency, 0.25 / (1 + rock.first));
+    EXPECT_FALSE(release.source);
   }
-  EXPECT_EQ(files.frequencies().largestWeight(), 0.25 / 6);
+  EXPECT_EQ(files.rocks().largestWeight(), 0.25 / 6);
   std::size_t passages = 0;
   files.forEach([&passages](const Passage&) { ++passages; });
   EXPECT_EQ(passages, whole.sorted().size());
@@ -444,7 +446,9 @@ TEST_F(TestPassageFile, FrequenciesAreThoseOfAllFiles)
   };
   put(release, -0.25);
   expectError({ names[0] }, "has the frequency -0.25");
-  put(release - 8, std::int64_t(0));
+  put(release, std::numeric_limits<double>::infinity());
+  expectError({ names[0] }, "has the frequency inf");
+  put(release - 16, std::int64_t(0));
   expectError({ names[0] }, "of 0 iterations");
   put(release, 0.125);
   expectError(names, "per year in one iteration and");
@@ -457,45 +461,48 @@ TEST_F(TestPassageFile, SourcesAreThoseOfAllFiles)
   for (int part = 0; part < 3; ++part)
   {
     HazardRaster raster = rasterOf([&](int k) { return k % 3 == part; });
-    RockSources sources;
+    RockReleases rocks;
     for (int k = part; k < 60; k += 3)
     {
-      sources.add(k % 10, 0, { k % 2 == 0 ? 4 : -1, 1 });
+      rocks.add(k % 10, 0, { .source = k % 2 == 0 ? 4 : -1 });
     }
     names.push_back(fileName(std::to_string(part)));
-    writePassages(raster, origin, "", names.back(), {}, {}, {}, sources);
+    writePassages(raster, origin, "", names.back(), {}, rocks);
   }
-  const RockSources sources = PassageFiles(names).sources();
-  ASSERT_EQ(sources.releases().size(), 10u);
-  for (const auto& [rock, release] : sources.releases())
+  const RockReleases rocks = PassageFiles(names).rocks();
+  ASSERT_EQ(rocks.all().size(), 10u);
+  for (const auto& [rock, release] : rocks.all())
   {
     EXPECT_EQ(release.iterations, 6);
     EXPECT_EQ(release.source, rock.first % 2 == 0 ? 4 : -1);
+    EXPECT_FALSE(release.frequency);
   }
   // A rock of two sources, and damage.
   HazardRaster raster = rasterOf([](int k) { return k == 0; });
-  RockSources others;
-  others.add(0, 0, { 5, 1 });
-  writePassages(raster, origin, "", fileName("other"), {}, {}, {}, others);
-  EXPECT_THROW(PassageFiles({ names[0], fileName("other") }).sources(), DataError);
+  RockReleases others;
+  others.add(0, 0, { .source = 5 });
+  writePassages(raster, origin, "", fileName("other"), {}, others);
+  const RockReleases two = PassageFiles({ names[0], fileName("other") }).rocks();
+  EXPECT_THROW(SourceReach{ two }, DataError);
+  EXPECT_THROW(writePassages(raster, origin, "", fileName("both"), {}, two), DataError);
   std::string bytes = read(fileName("other"));
-  const std::size_t source = bytes.find(std::string("\5\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0", 16));
-  ASSERT_NE(source, std::string::npos);
-  bytes[source + 8] = 0;
+  const std::size_t iterations = bytes.find(std::string("\1\0\0\0\0\0\0\0\5\0\0\0\0\0\0\0", 16));
+  ASSERT_NE(iterations, std::string::npos);
+  bytes[iterations] = 0;
   std::ofstream(fileName("other"), std::ios::binary) << bytes;
-  expectError({ fileName("other") }, "the source of rock 0 released it in 0 iterations");
+  expectError({ fileName("other") }, "rock 0 of 0 iterations");
 }
 
 TEST(SourceReach, IsTheLargestOfASource)
 {
   // Source 1 released a rock in each of four iterations, source 2 a hundred.
-  RockSources sources;
-  sources.add(0, 7, { 1, 4 });
+  RockReleases rocks;
+  rocks.add(0, 7, { .iterations = 4, .source = 1 });
   for (int rock = 1; rock <= 100; ++rock)
   {
-    sources.add(rock, 7, { 2, 4 });
+    rocks.add(rock, 7, { .iterations = 4, .source = 2 });
   }
-  SourceReach reach(sources);
+  SourceReach reach(rocks);
   const auto pass = [&](int iteration, int rock)
   {
     Passage passage;
