@@ -30,57 +30,6 @@ vtkHazardMapAlgorithm::vtkHazardMapAlgorithm()
 vtkHazardMapAlgorithm::~vtkHazardMapAlgorithm() = default;
 
 //------------------------------------------------------------------------------
-void vtkHazardMapAlgorithm::AddStatistic(int statistic)
-{
-  this->Statistics.push_back(statistic);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardMapAlgorithm::RemoveAllStatistics()
-{
-  if (!this->Statistics.empty())
-  {
-    this->Statistics.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardMapAlgorithm::AddEnergyThreshold(double threshold)
-{
-  this->EnergyThresholds.push_back(threshold);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardMapAlgorithm::RemoveAllEnergyThresholds()
-{
-  if (!this->EnergyThresholds.empty())
-  {
-    this->EnergyThresholds.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardMapAlgorithm::AddReturnPeriod(double period)
-{
-  this->ReturnPeriods.push_back(period);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardMapAlgorithm::RemoveAllReturnPeriods()
-{
-  if (!this->ReturnPeriods.empty())
-  {
-    this->ReturnPeriods.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
 rockfall::filters::HazardMapOptions vtkHazardMapAlgorithm::MapOptions() const
 {
   rockfall::filters::HazardMapOptions options;

@@ -8,6 +8,7 @@
 #define vtkHazardMapAlgorithm_h
 
 #include "RockfallFiltersModule.h"
+#include "listProperty.h"
 #include "vtkImageAlgorithm.h"
 
 #include <vector> // for lists of numbers
@@ -32,8 +33,7 @@ public:
    * maximum, 2 to 5 the 50, 90, 95 and 99 % quantiles. Mean, maximum and 95 % by default. Each takes
    * 16 bytes a cell.
    */
-  void AddStatistic(int statistic);
-  void RemoveAllStatistics();
+  rockfallListPropertyMacro(Statistics, int, AddStatistic, RemoveAllStatistics);
   ///@}
 
   ///@{
@@ -50,16 +50,15 @@ public:
    * Energies that part the classes of intensity, in kJ, positive, in any order. 30 and 300 by
    * default.
    */
-  void AddEnergyThreshold(double threshold);
-  void RemoveAllEnergyThresholds();
+  rockfallListPropertyMacro(
+    EnergyThresholds, double, AddEnergyThreshold, RemoveAllEnergyThresholds);
   ///@}
 
   ///@{
   /**
    * Return periods of the scenarios, in years, positive, in any order. 30, 100 and 300 by default.
    */
-  void AddReturnPeriod(double period);
-  void RemoveAllReturnPeriods();
+  rockfallListPropertyMacro(ReturnPeriods, double, AddReturnPeriod, RemoveAllReturnPeriods);
   ///@}
 
   ///@{

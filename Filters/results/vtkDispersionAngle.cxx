@@ -161,20 +161,6 @@ double compass(double angle)
 } // namespace
 
 //------------------------------------------------------------------------------
-void vtkDispersionAngle::AddClassLimit(double limit)
-{
-  this->ClassLimits.push_back(limit);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkDispersionAngle::ClearClassLimits()
-{
-  this->ClassLimits.clear();
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
 vtkDispersionAngle::vtkDispersionAngle()
 {
   this->SetNumberOfInputPorts(1);

@@ -18,6 +18,7 @@
 #define vtkDispersionAngle_h
 
 #include "RockfallFiltersModule.h"
+#include "listProperty.h"
 #include "vtkTableAlgorithm.h"
 
 #include <string> // for GroupBy
@@ -71,8 +72,7 @@ public:
    * Limits of classes of the array's numbers, ascending: groups are the classes then, such as
    * "below 0.5", "0.5 to 1" and "1 and above". None by default: every value is a group.
    */
-  void AddClassLimit(double limit);
-  void ClearClassLimits();
+  rockfallListPropertyMacro(ClassLimits, double, AddClassLimit, ClearClassLimits);
   ///@}
 
   ///@{

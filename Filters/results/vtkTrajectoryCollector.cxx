@@ -10,7 +10,6 @@
 #include "results/collectorOutputs.h"
 #include "results/lineWalls.h"
 #include "results/trajectoriesInput.h"
-#include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/rockPaths.h"
@@ -283,30 +282,6 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
 }
 
 } // namespace
-
-//------------------------------------------------------------------------------
-void vtkTrajectoryCollector::AddPoint(double x, double y, double z)
-{
-  this->Points.insert(this->Points.end(), { x, y, z });
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkTrajectoryCollector::AddCoordinate(double coordinate)
-{
-  this->Points.push_back(coordinate);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkTrajectoryCollector::ClearPoints()
-{
-  if (!this->Points.empty())
-  {
-    this->Points.clear();
-    this->Modified();
-  }
-}
 
 //------------------------------------------------------------------------------
 vtkTrajectoryCollector::vtkTrajectoryCollector()

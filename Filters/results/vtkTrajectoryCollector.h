@@ -19,6 +19,7 @@
 #define vtkTrajectoryCollector_h
 
 #include "RockfallFiltersModule.h"
+#include "listProperty.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // for FileName
@@ -74,12 +75,14 @@ public:
   /**
    * Points of a line that is drawn, in world coordinates; their z does not count. None by default.
    */
-  void AddPoint(double x, double y, double z);
+  void AddPoint(double x, double y, double z)
+  {
+    this->Points.insert(this->Points.end(), { x, y, z });
+    this->Modified();
+  }
   /// Numbers one by one, three of them a point: a list whose length is no multiple of three is an
   /// error of the run.
-  void AddCoordinate(double coordinate);
-  void ClearPoints();
-  int GetNumberOfPoints() const { return int(this->Points.size() / 3); }
+  rockfallListPropertyMacro(Points, double, AddCoordinate, ClearPoints);
   ///@}
 
   /**

@@ -107,6 +107,21 @@ void requireFew(std::size_t values, const char* property)
   }
 }
 
+std::vector<std::array<double, 3>> drawnPoints(const std::vector<double>& coordinates)
+{
+  if (coordinates.size() % 3 != 0)
+  {
+    throw ParameterError("Points has " + std::to_string(coordinates.size()) +
+      " numbers, each point needs three: x, y, z");
+  }
+  std::vector<std::array<double, 3>> points;
+  for (std::size_t k = 0; k < coordinates.size(); k += 3)
+  {
+    points.push_back({ coordinates[k], coordinates[k + 1], coordinates[k + 2] });
+  }
+  return points;
+}
+
 void Input::require() const
 {
   if (!problem_.empty())

@@ -12,6 +12,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -88,6 +89,10 @@ void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name);
 
 /// Throws ParameterError if a property has more than 100 values, of which each makes arrays or rows.
 void requireFew(std::size_t values, const char* property);
+
+/// The points of a property's list of coordinates: ParaView would hand on whole threes only, without
+/// a word of what is left over. Throws ParameterError where it is.
+std::vector<std::array<double, 3>> drawnPoints(const std::vector<double>& coordinates);
 
 /// Throws DataError unless each array has a tuple for each of `count` points or cells (`of`).
 void checkTuples(vtkFieldData* data, vtkIdType count, const std::string& name, const char* of);

@@ -5,7 +5,6 @@
 #include "base/hectare.h"
 #include "base/require.h"
 #include "base/text/numberText.h"
-#include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/terrainFieldData.h"

@@ -4,7 +4,6 @@
 #include "base/require.h"
 #include "base/text/numberText.h"
 #include "run/releasePlaces.h"
-#include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/streamingPieces.h"
@@ -87,30 +86,6 @@ int vtkDrawnStructure::FillInputPortInformation(int, vtkInformation* info)
 {
   rockfall::filters::acceptPolyData(info);
   return 1;
-}
-
-//------------------------------------------------------------------------------
-void vtkDrawnStructure::AddPoint(double x, double y, double z)
-{
-  this->Points.insert(this->Points.end(), { x, y, z });
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkDrawnStructure::AddCoordinate(double coordinate)
-{
-  this->Points.push_back(coordinate);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkDrawnStructure::ClearPoints()
-{
-  if (!this->Points.empty())
-  {
-    this->Points.clear();
-    this->Modified();
-  }
 }
 
 //------------------------------------------------------------------------------

@@ -11,6 +11,7 @@
 #define vtkDrawnStructure_h
 
 #include "RockfallFiltersModule.h"
+#include "listProperty.h"
 #include "vtkPolyDataAlgorithm.h"
 
 #include <vector> // for points
@@ -41,12 +42,14 @@ public:
    * Points of the line of a net or an embankment, or corners of a forest, in world coordinates;
    * their z does not count. None (the default): a level line through the middle of the slope.
    */
-  void AddPoint(double x, double y, double z);
+  void AddPoint(double x, double y, double z)
+  {
+    this->Points.insert(this->Points.end(), { x, y, z });
+    this->Modified();
+  }
   /// Numbers one by one, three of them a point: a list whose length is no multiple of three is an
   /// error of the run.
-  void AddCoordinate(double coordinate);
-  void ClearPoints();
-  int GetNumberOfPoints() const { return int(this->Points.size() / 3); }
+  rockfallListPropertyMacro(Points, double, AddCoordinate, ClearPoints);
   ///@}
 
   /**

@@ -39,30 +39,6 @@ vtkRockBlockSource::vtkRockBlockSource() = default;
 vtkRockBlockSource::~vtkRockBlockSource() = default;
 
 //------------------------------------------------------------------------------
-void vtkRockBlockSource::AddPoint(double x, double y, double z)
-{
-  this->Points.insert(this->Points.end(), { x, y, z });
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkRockBlockSource::AddCoordinate(double coordinate)
-{
-  this->Points.push_back(coordinate);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkRockBlockSource::ClearPoints()
-{
-  if (!this->Points.empty())
-  {
-    this->Points.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
 void vtkRockBlockSource::MakeRocks(Sources& sources)
 {
   sources.rocks.reserve(sources.places.size());

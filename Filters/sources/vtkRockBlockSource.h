@@ -14,6 +14,7 @@
 #define vtkRockBlockSource_h
 
 #include "RockfallFiltersModule.h"
+#include "listProperty.h"
 #include "vtkRockAlgorithm.h"
 
 #include <cstddef> // for numbers of sources
@@ -195,12 +196,14 @@ public:
    * Points of the source that is drawn, in world coordinates; with a terrain they stand on it. None
    * (the default): with a terrain, the ends of a level line across the highest of its steep places.
    */
-  void AddPoint(double x, double y, double z);
+  void AddPoint(double x, double y, double z)
+  {
+    this->Points.insert(this->Points.end(), { x, y, z });
+    this->Modified();
+  }
   /// Numbers one by one, three of them a point: a list whose length is no multiple of three is an
   /// error of the run.
-  void AddCoordinate(double coordinate);
-  void ClearPoints();
-  int GetNumberOfPoints() const { return int(this->Points.size() / 3); }
+  rockfallListPropertyMacro(Points, double, AddCoordinate, ClearPoints);
   ///@}
 
   /**
