@@ -139,54 +139,49 @@ void writeTrajectories(vtkPolyData* data, LayerWriter& writer)
     });
 }
 
-/// The last points of the lines, or all of them, with the attributes of line and point.
-void writeLinePoints(vtkPolyData* data, bool all, LayerWriter& writer)
+/// A layer of points with the attributes of their cell and their own. `forEach` calls its argument
+/// with the number of each cell and its points.
+template <typename ForEach>
+void writePoints(vtkPolyData* data, const std::string& name, LayerWriter& writer, ForEach&& forEach)
 {
-  Attributes ofLine, ofPoint;
-  ofLine.Append(data->GetCellData());
+  Attributes ofCell, ofPoint;
+  ofCell.Append(data->GetCellData());
   ofPoint.Append(data->GetPointData());
-  std::vector<LayerField> fields = ofLine.Fields;
+  std::vector<LayerField> fields = ofCell.Fields;
   fields.insert(fields.end(), ofPoint.Fields.begin(), ofPoint.Fields.end());
-  const std::string name = all ? "samples" : "ends";
   writer.beginLayer(name, LayerWriter::Geometry::Point, fields);
   writer.setStyle(rockfall::filters::layerStyle(name, fields));
   std::vector<FieldValue> values;
-  rockfall::filters::forEachLine(data,
-    [&](vtkIdType cell, std::span<const vtkIdType> ids)
-    {
-      for (const vtkIdType id : all || ids.empty() ? ids : ids.last(1))
-      {
-        const Vec3 place = pointOf(data, id);
-        values.clear();
-        ofLine.AppendValues(cell, values);
-        ofPoint.AppendValues(id, values);
-        writer.add({ &place, 1 }, {}, values);
-      }
-    });
-}
-
-void writeVertices(vtkPolyData* data, LayerWriter& writer)
-{
-  Attributes ofVertex, ofPoint;
-  ofVertex.Append(data->GetCellData());
-  ofPoint.Append(data->GetPointData());
-  std::vector<LayerField> fields = ofVertex.Fields;
-  fields.insert(fields.end(), ofPoint.Fields.begin(), ofPoint.Fields.end());
-  writer.beginLayer("points", LayerWriter::Geometry::Point, fields);
-  writer.setStyle(rockfall::filters::layerStyle("points", fields));
-  std::vector<FieldValue> values;
-  rockfall::filters::forEachCell(data->GetVerts(), 0,
+  forEach(
     [&](vtkIdType cell, std::span<const vtkIdType> ids)
     {
       for (const vtkIdType id : ids)
       {
         const Vec3 place = pointOf(data, id);
         values.clear();
-        ofVertex.AppendValues(cell, values);
+        ofCell.AppendValues(cell, values);
         ofPoint.AppendValues(id, values);
         writer.add({ &place, 1 }, {}, values);
       }
     });
+}
+
+/// The last points of the lines, or all of them.
+void writeLinePoints(vtkPolyData* data, bool all, LayerWriter& writer)
+{
+  writePoints(data, all ? "samples" : "ends", writer,
+    [&](auto&& use)
+    {
+      rockfall::filters::forEachLine(data,
+        [&](vtkIdType cell, std::span<const vtkIdType> ids)
+        { use(cell, all || ids.empty() ? ids : ids.last(1)); });
+    });
+}
+
+void writeVertices(vtkPolyData* data, LayerWriter& writer)
+{
+  writePoints(data, "points", writer,
+    [data](auto&& use) { rockfall::filters::forEachCell(data->GetVerts(), 0, use); });
 }
 
 } // namespace
