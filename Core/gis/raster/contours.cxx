@@ -260,19 +260,7 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   grid.yOrigin = box.yMin;
   const double columns = std::floor((box.xMax - box.xMin) / grid.cellSize + 1e-6) + 1.0;
   const double rows = std::floor((box.yMax - box.yMin) / grid.cellSize + 1e-6) + 1.0;
-  if (!(columns >= 2.0 && rows >= 2.0))
-  {
-    throw DataError(fileName + ": a cell size of " + number(grid.cellSize) + " m leaves " +
-      number(columns) + " x " + number(rows) + " nodes, at least 2 x 2 are needed");
-  }
-  requireMemory(columns * rows, fileName);
-  if (std::max(columns, rows) > std::numeric_limits<int>::max())
-  {
-    throw DataError(fileName + ": a cell size of " + number(grid.cellSize) + " m gives " +
-      number(columns) + " x " + number(rows) + " nodes");
-  }
-  grid.columns = int(columns);
-  grid.rows = int(rows);
+  setNodes(grid, columns, rows, 0, fileName);
 
   const double x0 = 0.5 * (box.xMin + box.xMax), y0 = 0.5 * (box.yMin + box.yMax);
   UnitedPoints united =

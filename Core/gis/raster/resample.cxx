@@ -94,6 +94,24 @@ void requireMemory(double nodes, const std::string& fileName)
   }
 }
 
+void setNodes(
+  GridGeometry& grid, double columns, double rows, std::size_t others, const std::string& fileName)
+{
+  const std::string what = fileName + ": a cell size of " + number(grid.cellSize) + " m ";
+  const std::string nodes = number(columns) + " x " + number(rows) + " nodes";
+  if (!(columns >= 2.0 && rows >= 2.0))
+  {
+    throw DataError(what + "leaves " + nodes + ", at least 2 x 2 are needed");
+  }
+  requireMemory(columns * rows + double(others), fileName);
+  if (std::max(columns, rows) > std::numeric_limits<int>::max())
+  {
+    throw DataError(what + "gives " + nodes);
+  }
+  grid.columns = int(columns);
+  grid.rows = int(rows);
+}
+
 GridGeometry layOut(const SourceGrid& source, const CrsChange& change, const Resampling& how,
   const std::string& fileName)
 {
@@ -135,20 +153,8 @@ GridGeometry layOut(const SourceGrid& source, const CrsChange& change, const Res
   target.cellSize = how.cellSize;
   const double columns = std::max(0.0, along(x, target.xOrigin));
   const double rows = std::max(0.0, along(y, target.yOrigin));
-  if (columns < 2.0 || rows < 2.0)
-  {
-    throw DataError(fileName + ": a cell size of " + number(how.cellSize) + " m leaves " +
-      number(columns) + " x " + number(rows) + " nodes, at least 2 x 2 are needed");
-  }
   // The source's nodes stay until the target's are made.
-  requireMemory(columns * rows + double(source.heights.size()), fileName);
-  if (std::max(columns, rows) > std::numeric_limits<int>::max())
-  {
-    throw DataError(fileName + ": a cell size of " + number(how.cellSize) + " m gives " +
-      number(columns) + " x " + number(rows) + " nodes");
-  }
-  target.columns = int(columns);
-  target.rows = int(rows);
+  setNodes(target, columns, rows, source.heights.size(), fileName);
   return target;
 }
 

@@ -59,6 +59,11 @@ GridGeometry layOut(const SourceGrid& source, const CrsChange& change, const Res
 std::vector<double> resample(const SourceGrid& source, const CrsChange& change,
   const Resampling& how, const GridGeometry& target);
 
+/// Sets how many nodes a grid has. Throws DataError if they are fewer than 2 rows or columns, or more
+/// than memory holds beside `others`.
+void setNodes(
+  GridGeometry& grid, double columns, double rows, std::size_t others, const std::string& fileName);
+
 /// Throws DataError if so many doubles do not fit in this machine's memory.
 void requireMemory(double nodes, const std::string& fileName);
 
