@@ -134,12 +134,7 @@ FrequencyLayers::FrequencyLayers(const FrequencyOptions& options, double release
   vtkFieldData* data = image->GetCellData();
   const vtkIdType cells = image->GetNumberOfCells();
   const auto number = [&](const std::string& name, float empty)
-  {
-    auto array = addArray<vtkFloatArray>(data, name.c_str());
-    array->SetNumberOfTuples(cells);
-    array->FillValue(empty);
-    return array;
-  };
+  { return addFilledArray<vtkFloatArray>(data, name, cells, empty); };
   frequencies_.push_back(number("AnnualFrequency", 0.0F));
   period_ = number("ReturnPeriod", std::numeric_limits<float>::quiet_NaN());
   for (const double threshold : ordered(options.energyThresholds))
@@ -152,9 +147,7 @@ FrequencyLayers::FrequencyLayers(const FrequencyOptions& options, double release
   {
     const std::string end = numberText(years) + "a";
     probabilities_.push_back(number("PassageProbability" + end, 0.0F));
-    intensities_.push_back(addArray<vtkIntArray>(data, ("Intensity" + end).c_str()));
-    intensities_.back()->SetNumberOfTuples(cells);
-    intensities_.back()->FillValue(0);
+    intensities_.push_back(addFilledArray<vtkIntArray>(data, "Intensity" + end, cells, 0));
   }
   addArray<vtkDoubleArray>(image->GetFieldData(), "AnnualFrequencyLimit")
     ->InsertNextValue(frequencyLimit(

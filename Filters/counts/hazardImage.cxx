@@ -175,19 +175,9 @@ public:
     vtkFieldData* data = image->GetCellData();
     const vtkIdType cells = image->GetNumberOfCells();
     const auto count = [&](const char* name)
-    {
-      auto array = addArray<vtkIntArray>(data, name);
-      array->SetNumberOfTuples(cells);
-      array->FillValue(0);
-      return array;
-    };
+    { return addFilledArray<vtkIntArray>(data, name, cells, 0); };
     const auto number = [&](const std::string& name, float empty)
-    {
-      auto array = addArray<vtkFloatArray>(data, name.c_str());
-      array->SetNumberOfTuples(cells);
-      array->FillValue(empty);
-      return array;
-    };
+    { return addFilledArray<vtkFloatArray>(data, name, cells, empty); };
     passages_ = count("Passages");
     rocks_ = count("Rocks");
     stops_ = count("StoppingPoints");

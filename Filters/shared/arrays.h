@@ -54,6 +54,17 @@ inline void addTexts(vtkFieldData* data, const char* name, std::span<const std::
   }
 }
 
+/// The same of so many tuples of one component that have this value.
+template <typename Array, typename Value>
+vtkSmartPointer<Array> addFilledArray(
+  vtkFieldData* data, const std::string& name, vtkIdType tuples, Value value)
+{
+  auto array = addArray<Array>(data, name.c_str());
+  array->SetNumberOfTuples(tuples);
+  array->FillValue(value);
+  return array;
+}
+
 /// Keeps the ranges of an array of these values with it, as VTK does when it is asked for them.
 /// Arrays with a value that is not finite are left to VTK.
 template <typename Value>
