@@ -6,7 +6,6 @@
 #include "results/mergedCrossings.h"
 #include "statistics/design.h"
 
-#include <string>
 #include <vector>
 
 class vtkPolyData;

@@ -8,7 +8,6 @@
 #include "vtkDataObject.h"
 
 #include <new>
-#include <stdexcept>
 
 namespace rockfall::filters
 {

@@ -6,7 +6,6 @@
 #include <proj.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 namespace rockfall::gis
