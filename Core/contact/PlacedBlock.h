@@ -81,9 +81,9 @@ private:
   Vec3 upper_ = Vec3::Zero();
 };
 
-/// Whether it is a sphere or an ellipsoid (geometry/roundBody.h).
+/// Whether the rock is a sphere or an ellipsoid (geometry/roundBody.h).
 bool isRound(const PlacedBlock& rock);
-/// Its matrix A of semi-axes as it stands, world axes, m.
+/// Matrix A of the semi-axes of a round rock as it stands, world axes, m.
 Mat3 roundAxes(const PlacedBlock& rock);
 
 } // namespace rockfall

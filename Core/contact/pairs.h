@@ -51,7 +51,7 @@ public:
   std::span<const Polyhedron::Edge> edges;
   double radius = 0.0;          ///< Of the bounding sphere about the centroid, m.
   double inside = 0.0;          ///< Radius of a ball about the centroid that the rock holds, m.
-  Vec3 position = Vec3::Zero(); ///< For which all this stands.
+  Vec3 position = Vec3::Zero(); ///< Place for which all this stands.
   Mat3 rotation = Mat3::Zero();
 
   using Four = ShapeLayout::Four;
@@ -141,8 +141,8 @@ struct PairLaw
 struct alignas(64) RockPair
 {
   PairAxis axis;
-  bool touched = false; ///< Has had closed contacts in the last step (see touchedAt).
-  bool linked = false;  ///< May touch in the step at hand.
+  bool touched = false; ///< Closed contacts in the last step (see touchedAt).
+  bool linked = false;  ///< The rocks may touch in the step at hand.
   bool known = false;   ///< The axis has been found for where the rocks stand now.
   /// The axis was found at the end of the last step, where the rocks still stand: exact if they
   /// overlap, else some direction in which they are apart.
@@ -200,7 +200,7 @@ struct PairMotion
 struct ClosingGaps
 {
   const PairMotion& motion;
-  double time;  ///< For which they go on, s.
+  double time;  ///< Time for which the rocks go on, s.
   double least; ///< Gaps that may close however the rocks move, m.
   double rims;  ///< Speed at most by turning, of both together, m/s.
 

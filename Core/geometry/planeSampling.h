@@ -21,7 +21,7 @@ public:
   explicit PolygonSampler(const std::vector<std::vector<Vec3>>& rings);
 
   double area() const { return cumulated_.empty() ? 0.0 : cumulated_.back(); } ///< m²
-  /// What it is cut into: trapezoids, their corners counter-clockwise, m.
+  /// Trapezoids that the area is cut into, their corners counter-clockwise, m.
   std::vector<std::array<Eigen::Vector2d, 4>> pieces() const;
   /// The place of three numbers from 0 to 1. Area must not be 0.
   Eigen::Vector2d at(double u, double v, double w) const;

@@ -33,7 +33,7 @@ std::vector<int> earlierLines(const PlanLines& lines);
 /// The part of a line that lies within `kTwinDistance` of another one, and where it crosses itself.
 struct SharedStretch
 {
-  int earlier = -1;    ///< That other one, of several the longest; the line's own number: itself.
+  int earlier = -1;    ///< The other line, of several the longest; the line's own number: itself.
   double length = 0.0; ///< m
   Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = Eigen::Vector2d::Zero();
   /// End of the first loop that is as long as `kSharedLength`.
@@ -52,7 +52,7 @@ std::vector<SharedStretch> sharedStretches(
 /// Ground of a polygon that lies in another one as well.
 struct SharedGround
 {
-  int earlier = -1;  ///< That other one, the first of several.
+  int earlier = -1;  ///< The other area, the first of several.
   double area = 0.0; ///< m², to two digits.
 };
 

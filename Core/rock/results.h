@@ -115,7 +115,7 @@ struct StructureEvent
 
 enum class Fate
 {
-  Rested = 0,     ///< Lies still on the slope.
+  Rested = 0,     ///< The rock lies still on the slope.
   LeftDomain = 1, ///< Went beyond the slope's edge.
   Moving = 2,     ///< Still moving at the end time.
   Caught = 3,     ///< Stopped by a barrier.
@@ -131,10 +131,10 @@ struct TrajectorySummary
   int rock = 0;      ///< Index in the list of rocks.
   int iteration = 0; ///< From 0, or from the run's first one.
   int piece = 0;     ///< Of the rock in the iteration, from 1; 0: the rock as released.
-  int pieces = 0;    ///< That it broke into and that are followed.
+  int pieces = 0;    ///< Pieces that the rock broke into and that are followed.
   std::int64_t blockId = 0;
   Fate fate = Fate::Moving;
-  double endTime = 0.0; ///< When it rested, left or was cut off, s.
+  double endTime = 0.0; ///< When the rock rested, left or was cut off, s.
   Vec3 start = Vec3::Zero();
   Vec3 stop = Vec3::Zero();
   double runOut = 0.0;              ///< Horizontal distance from start to stop, m.

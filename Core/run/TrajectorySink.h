@@ -16,7 +16,7 @@ class TrajectorySink
 {
 public:
   virtual ~TrajectorySink() = default;
-  /// What it asks for of an iteration. Called by the threads that simulate, several at a time.
+  /// What is asked for of an iteration. Called by the threads that simulate, several at a time.
   virtual Kept kept(int) const { return {}; }
   /// Called once per rock and iteration and piece of a rock that broke, in the order (iteration,
   /// rock, piece), by one thread at a time.

@@ -45,7 +45,7 @@ struct Part
   std::uint32_t number;
   SingleRock fall;
   double born = 0.0;               ///< s
-  bool told = false;               ///< Has all that is asked for, though it moves.
+  bool told = false;               ///< The part has all that is asked for, though it moves.
   std::vector<std::size_t> pieces; ///< Among all parts.
 };
 
@@ -73,7 +73,7 @@ public:
     whole.fall.liftOntoGround();
     whole.fall.begin();
     this->advance(0, parameters_.endTime);
-    // It is the only one so far.
+    // The rock is the only part so far.
     const double first = together_ ? whole.fall.state().time : parameters_.endTime;
     const double dt = parameters_.timeStep;
     for (double step = std::floor(first / dt) + 1.0; this->anyGoesOn(); step += 1.0)

@@ -61,7 +61,7 @@ public:
   /// Result of pushing rocks apart in the iterations simulated so far; where nothing of their
   /// release is drawn, what it does in all, known from the start.
   PushedApart pushed() const;
-  /// Whether they are pushed anew in each iteration.
+  /// Whether rocks are pushed anew in each iteration.
   bool pushesAnew() const { return parameters_.pushRocksApart && start_.empty(); }
 
   /// The trajectories of a unit, in the order of its rocks, each with its pieces behind it, and of

@@ -25,8 +25,8 @@ constexpr double none = -std::numeric_limits<double>::infinity();
 /// the corner of four cells. m
 constexpr double leastWay = 1e-9;
 
-constexpr std::int64_t kPathsAtOnce = 16;    ///< That one thread takes.
-constexpr std::int64_t kPathsOfRound = 1024; ///< Whose passages wait, shared out, to be taken in.
+constexpr std::int64_t kPathsAtOnce = 16;    ///< Paths that one thread takes.
+constexpr std::int64_t kPathsOfRound = 1024; ///< Paths whose passages wait to be taken in.
 
 /// Appends where `value` (of bounds low, high) passes a multiple of `size` from `start` on.
 void appendCuts(const Cubic& value, std::array<double, 2> bounds, double start, double size,

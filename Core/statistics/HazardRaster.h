@@ -60,7 +60,7 @@ private:
   template <class Use>
   bool forPieces(const RockPath& path, Use&& use) const;
   void keep(const RockPath& path, const Passage& visit);
-  void addWhole(const RockPath& path); ///< Its passages, in the order of cells.
+  void addWhole(const RockPath& path); ///< Passages of the path, in the order of cells.
   /// Takes the passages from `piece` on, of a piece that came to be in cell `birth`, into those of
   /// its rock.
   void joinRock(std::size_t piece, std::int64_t birth);

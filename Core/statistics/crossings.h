@@ -75,7 +75,7 @@ struct LineSummary
   int crossings = 0; ///< Passings; a rock may come back.
   double share = 0.0;
   double shareError = 0.0; ///< binomialError over all released.
-  int highestQuantile = 0; ///< That so many rocks can give, %.
+  int highestQuantile = 0; ///< Quantile that so many rocks can give, %.
   /// J; of all rocks, each as it passes for the first time; of pieces of a rock the largest values.
   SampleStatistics energy;
   SampleStatistics height;       ///< m

@@ -82,7 +82,7 @@ QuantileLimits quantileLimits(std::span<const double> ascending, double q)
   {
     limits.low = ascending[std::size_t(low - 1)];
   }
-  // That of rank u is below the quantile if u or more are.
+  // The value of rank u is below the quantile if u or more are.
   const std::int64_t high = leastSuccesses(n, q, 1.0 - kDoubt) + 1;
   if (high <= n)
   {

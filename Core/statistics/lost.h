@@ -31,7 +31,7 @@ enum class Loss
 struct LostRocks
 {
   std::int64_t rocks = 0;    ///< All of them.
-  std::int64_t pieces = 0;   ///< That rocks broke into.
+  std::int64_t pieces = 0;   ///< Pieces that rocks broke into.
   std::int64_t moving = 0;   ///< Still moving at the end time.
   std::int64_t overEdge = 0; ///< Went over the edge of the DEM.
   std::int64_t inNodata = 0; ///< Fell into a hole of nodata.

@@ -37,7 +37,7 @@ class HazardRaster;
 
 /// The first bytes of a file.
 constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '8' };
-/// Stands for a source in a file.
+/// Source in a file of a rock whose source is not known.
 constexpr std::int64_t kSourceNotKnown = std::numeric_limits<std::int64_t>::min();
 /// Of each file that is read one part is in memory.
 constexpr std::size_t kPassagesOfPart = 4096;

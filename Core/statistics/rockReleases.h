@@ -17,7 +17,7 @@ namespace rockfall
 /// Releases of one rock in some iterations.
 struct RockRelease
 {
-  std::int64_t iterations = 1;          ///< That released the rock.
+  std::int64_t iterations = 1;          ///< Iterations that released the rock.
   std::optional<double> frequency = {}; ///< 1/a
   std::optional<std::int64_t> source = {};
 };
@@ -30,7 +30,7 @@ public:
   /// Throws DataError if the frequency is negative or not finite, or another one than the same rock
   /// had before.
   void add(int rock, std::int64_t blockId, const RockRelease& release);
-  /// Those of another part of the run. Throws DataError as above.
+  /// Takes in the rocks of another part of the run. Throws DataError as above.
   void add(const RockReleases& other);
   /// By number and block.
   const std::map<std::pair<int, std::int64_t>, RockRelease>& all() const { return rocks_; }

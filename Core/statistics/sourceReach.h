@@ -33,7 +33,7 @@ private:
   };
   std::vector<Source> sources_;
   std::map<std::pair<int, std::int64_t>, std::size_t> sourceOf_;
-  std::vector<std::size_t> touched_; ///< Those that something came from.
+  std::vector<std::size_t> touched_; ///< Sources that a rock of the cell is of.
 };
 
 } // namespace rockfall

@@ -99,7 +99,7 @@ public:
   void askAfterLying(std::vector<std::string>& notes) const;
   /// Whether a place is within a tree.
   bool isInTree(int tree, const Vec3& place) const;
-  /// What it takes up in plan, and its top.
+  /// Box that the tree takes up in plan, and its top.
   FlatBox treeBox(int tree) const;
 
   /// CFEs of obstacles have numbers beyond the slope's: first the embankments', then the trees'.

@@ -289,7 +289,7 @@ public:
   /// Gradients of CFEs: none is farther from `tilt` than `relief`.
   struct Gradients
   {
-    Eigen::Vector2d tilt = Eigen::Vector2d::Zero(); ///< Their mean.
+    Eigen::Vector2d tilt = Eigen::Vector2d::Zero(); ///< Mean of the tilts.
     double relief = 0.0;
   };
   /// Of the CFEs of rows and columns of cells, with ground all over them.

@@ -41,7 +41,7 @@ struct GroundPreset
   PresetSupport support; ///< Of the weakest of its numbers that matter.
   /// Never node by node: whatever the cells, rocks meet the same ground.
   Roughness roughness;
-  const char* errs;              ///< Where it is known to err, for the note of a slope.
+  const char* errs;              ///< Where the preset is known to err, for the note of a slope.
   double restitutionSpeed = 0.0; ///< K of the speed-dependent model, m/s; 0: Rn at every speed.
 
   SurfaceMaterial material() const;

@@ -31,7 +31,7 @@ struct Stand
 /// Most stems of a stand: more than any slope has.
 constexpr double kMostStems = 1e6;
 
-/// Its trees. Their number is Poisson's with the mean of density times area, places have equal
+/// Trees of a stand. The number is Poisson's with the mean of density times area, places have equal
 /// chance but keep the distance, diameters are gamma's. All is drawn by counter: a function of the
 /// stand, its number and `seed`. Stems break at their capacity if `breaks`. Throws DataError, to
 /// follow the name of the row: no area, too many stems, or no room for them.

@@ -10,7 +10,7 @@
 ///
 ///     ΔE/E = −0.046 + 1.026 / (1 + 10^(−8.007 (0.58 − o)))      (Dorren 2016, Rockyfor3D)
 ///
-/// That is 0.98 at o = 0, 0.79 at 0.5, 0.06 at 0.7, and below 0, here 0, from about 0.75 on.
+/// The share is 0.98 at o = 0, 0.79 at 0.5, 0.06 at 0.7, and below 0, here 0, from about 0.75 on.
 ///
 /// A stem holds what comes with no more than this share of its capacity E; of more it takes the
 /// share. The velocity towards the axis is √(1 − o²) of the velocity, its energy 1 − o² of the

@@ -59,7 +59,7 @@ struct YieldingGround
   bool scars() const { return this->modulus < hard; }
   bool slips() const { return this->frictionMost > 0.0; }
   bool deviates() const { return (this->scars() || this->slips()) && this->deviation > 0.0; }
-  /// Whether it changes while an impact lasts, which is no event then.
+  /// Whether the ground changes while an impact lasts, which is no event then.
   bool givesWay() const { return this->scars() || this->slips(); }
   bool yields() const { return this->givesWay() || this->rollingResistance > 0.0; }
   /// d_max, m, for a rock of this mass (kg) and volume (m³) whose surface comes down on the ground at

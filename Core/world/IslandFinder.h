@@ -15,7 +15,7 @@ namespace rockfall
 /// State of two rocks near each other.
 enum class PairState : std::uint8_t
 {
-  Undecided, ///< May meet if they go as far as is known;
+  Undecided, ///< The rocks may meet if they go as far as is known;
   Separate,  ///< may not, or both sleep;
   Apart,     ///< may not, and nothing lasts of them;
   Overlaps,  ///< overlap;

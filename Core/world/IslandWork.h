@@ -32,7 +32,7 @@ struct IslandWork
   {
     bool onSlope;
     std::size_t of; ///< Number in the island, of a pair or of a rock.
-    Contact before; ///< As it was before the step.
+    Contact before; ///< The contact as it was before the step.
   };
   std::vector<Added> addedTo;
   /// Of a part of the rocks or pairs that are laid out: how many there are in it, then before it.
@@ -113,7 +113,7 @@ struct IslandWork
     Vec3 displacement; ///< Of the centroid, m.
     double rimTravel;  ///< Longest displacement about it, m.
     bool moved;        ///< Since the last look.
-    bool low;          ///< May be at the slope in the end.
+    bool low;          ///< The rock may be at the slope in the end.
   };
   std::vector<Motion> motions;
 };

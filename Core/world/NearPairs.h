@@ -47,9 +47,9 @@ struct alignas(64) NearPair
   Vec3 normal = Vec3::Zero();
   double offset = kNoAxis;
   double looked = -1.0;   ///< Reach within which the axis was looked for in this step, m.
-  bool linked = false;    ///< May touch in this step,
+  bool linked = false;    ///< The rocks may touch in this step,
   bool wasLinked = false; ///< or could in the last one.
-  bool holds = false;     ///< May have contacts.
+  bool holds = false;     ///< The pair may have contacts.
 };
 
 inline bool operator<(const NearPair& a, const NearPair& b)

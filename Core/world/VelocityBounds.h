@@ -22,7 +22,7 @@ struct VelocityBounds
   Vec3 middle = Vec3::Zero();
   double spread = 0.0;
   Vec3 velocity = Vec3::Zero();        ///< m/s
-  Quat orientation = Quat::Identity(); ///< For which `turned` stands.
+  Quat orientation = Quat::Identity(); ///< The one for which `turned` stands.
   Vec6 strain = Vec6::Zero();
   /// Centre of the ball in which neighbours have been looked for, less the drift of all rocks
   /// since, m.

@@ -70,7 +70,7 @@ private:
   std::unique_ptr<IslandFinder> islandFinder_; ///< None if rocks hit no other.
   std::vector<int> order_;  ///< Islands in the order in which they are gone over.
   std::vector<char> waits_; ///< Of each unit, whether it may meet a barrier in the step.
-  std::vector<std::pair<double, std::size_t>> atBarriers_; ///< Those units, by when.
+  std::vector<std::pair<double, std::size_t>> atBarriers_; ///< Units that may meet one, by when.
 };
 
 } // namespace rockfall

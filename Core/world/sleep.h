@@ -11,7 +11,7 @@ namespace rockfall
 /// Whether a rock has been still for long enough; follows the places that it has stayed at.
 bool isStill(const WorldState& world, FallingRock& rock);
 
-/// Its rest begins anew, as something has gone that it may have lain on or leant on.
+/// The rock's rest begins anew, as something has gone that it may have lain on or leant on.
 void restAnew(FallingRock& rock);
 
 void putToSleep(FallingRock& rock);

@@ -39,6 +39,17 @@ vtkSmartPointer<Array> addArray(vtkFieldData* data, const char* name, int compon
   return array;
 }
 
+/// The same of so many tuples of one component that have this value.
+template <typename Array, typename Value>
+vtkSmartPointer<Array> addFilledArray(
+  vtkFieldData* data, const std::string& name, vtkIdType tuples, Value value)
+{
+  auto array = addArray<Array>(data, name.c_str());
+  array->SetNumberOfTuples(tuples);
+  array->FillValue(value);
+  return array;
+}
+
 /// Adds texts to the array of this name, which is made for the first of them.
 inline void addTexts(vtkFieldData* data, const char* name, std::span<const std::string> texts)
 {
@@ -52,17 +63,6 @@ inline void addTexts(vtkFieldData* data, const char* name, std::span<const std::
   {
     array->InsertNextValue(text);
   }
-}
-
-/// The same of so many tuples of one component that have this value.
-template <typename Array, typename Value>
-vtkSmartPointer<Array> addFilledArray(
-  vtkFieldData* data, const std::string& name, vtkIdType tuples, Value value)
-{
-  auto array = addArray<Array>(data, name.c_str());
-  array->SetNumberOfTuples(tuples);
-  array->FillValue(value);
-  return array;
 }
 
 /// Keeps the ranges of an array of these values with it, as VTK does when it is asked for them.

@@ -344,14 +344,14 @@ private:
   const PlacedBlock& rock_;
   const SurfacePatch& patch_;
   const Crossing& at_;
-  const Contact contact_; ///< As it was.
+  const Contact contact_; ///< The contact as it was.
   const Polyhedron::Edge& edge_;
   const SurfacePatch::Ridge& ridge_;
   double same_;  ///< Depths that differ by rounding only, m.
   double reach_; ///< Past the end of an edge, m.
   Contact best_;
-  double highest_ = -std::numeric_limits<double>::infinity(); ///< Its gap, m.
-  double beyond_ = 0.0;                                       ///< Past its end, m.
+  double highest_ = -std::numeric_limits<double>::infinity(); ///< Gap of the best, m.
+  double beyond_ = 0.0;                                       ///< Way past the end of the edge, m.
 };
 
 bool refreshEdgeEdge(const PlacedBlock& rock, const SurfacePatch& patch, Contact& contact)

@@ -23,8 +23,8 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
 /// Height and free time of a rock in flight over the window's ground.
 struct FlightLook
 {
-  double gap;  ///< Height over the ground, along the vertical, m; < 0: it overlaps it.
-  Vec3 lowest; ///< Where it is least, material point of the rock, m.
+  double gap;  ///< Height over the ground, along the vertical, m; < 0: overlap.
+  Vec3 lowest; ///< Place of the least gap, material point of the rock, m.
   double free; ///< Lower bound of the time without a touch, s.
 };
 /// Time as of timeToTouch, and closer, where there is ground all over the window: around what is under a

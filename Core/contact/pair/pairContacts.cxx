@@ -26,7 +26,7 @@ struct Match
 {
   int old;     ///< Number of a contact, −1: none.
   bool itself; ///< Between the same features.
-  bool near;   ///< Where it was.
+  bool near;   ///< The place is where the contact was.
 };
 
 /// Finds for each touch which of the old contacts it is; points nearer than `same` (m) may be one.

@@ -69,7 +69,7 @@ public:
 private:
   std::optional<int> columnOf(std::initializer_list<const char*> names) const;
   std::string nameOf(int column) const;
-  /// Whether it is true or false, of which GDAL makes 1 and 0, in GeoJSON beside numbers as well.
+  /// Whether a column is of truths, of which GDAL makes 1 and 0, in GeoJSON beside numbers as well.
   bool isTruth(int column) const;
 
   const std::string& fileName_;

@@ -15,7 +15,7 @@ namespace rockfall::gis
 /// Whether a name has a file system of GDAL's in it that is neither memory nor a local file.
 bool isOnOtherSystem(const std::string& name);
 
-/// That, or an address (://).
+/// Whether a name is on such a file system, or an address (://).
 bool isAddress(const std::string& name);
 
 /// Whether the name is itself the text of a virtual dataset.

@@ -39,7 +39,7 @@ struct LayerWish
   /// As the user gives it; empty: the one layer that will do. Of a drawing (DXF) the names of its
   /// own layers, with commas between them, or * for all.
   std::string layer;
-  std::string property = "LayerName"; ///< In which the user gives it.
+  std::string property = "LayerName"; ///< Property in which the user gives the layer.
   const char* what = "layer";         ///< For messages: "layer of lines".
   unsigned kinds = 0;
   /// A layer that has one column of each choice will do better than those that have not.

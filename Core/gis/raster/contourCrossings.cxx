@@ -173,7 +173,7 @@ private:
   std::vector<Run> runs_;
   std::int64_t count_ = 0;
   std::optional<Crossing> first_;
-  std::size_t firstSegment_ = 0; ///< Its segment of the earlier line.
+  std::size_t firstSegment_ = 0; ///< Segment of the earlier line at the first.
 };
 
 } // namespace

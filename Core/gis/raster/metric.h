@@ -23,7 +23,7 @@ struct Box
 Box extent(const SourceGrid& grid);
 /// A grid of 2 × 2 nodes in the corners of a box.
 SourceGrid gridOf(const Box& box);
-/// Whether it could be longitudes and latitudes in degrees.
+/// Whether a box could be longitudes and latitudes in degrees.
 bool fitsTheGlobe(const Box& box);
 std::string boxText(const Box& box);
 

@@ -27,7 +27,7 @@ struct GridAxes
 {
   std::optional<AxesPlace> place; ///< In metres or degrees; nothing where GDAL has a place.
   double metres = 1.0;            ///< Per unit that both axes declare; 1 for degrees and for none.
-  std::string unit;               ///< As it is written; empty for degrees and for none.
+  std::string unit;               ///< The unit as written; empty for degrees and for none.
 };
 
 /// Throws DataError for an axis that is not evenly spaced, for axes of two units, and for a

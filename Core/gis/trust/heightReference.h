@@ -55,7 +55,7 @@ public:
   HeightChange(const std::string& fileName, const CrsPtr& from, const std::string& to, bool implied,
     std::vector<std::string>& notes);
 
-  /// Whether it changes nothing.
+  /// Whether the change is none.
   bool empty() const { return !way_; }
   /// Of a place in the layer's CRS, both in metres upwards. Throws DataError as above.
   double operator()(double x, double y, double height) const;

@@ -48,9 +48,9 @@ struct Fall
   RockBody body;
   bool pressed = false;   ///< Out of an island, or a deep overlap: it goes as place.
   bool impulses;          ///< Impacts are events in impulse space.
-  int struckAtOnce = 0;   ///< Such events since the rock last moved on.
-  double openTime = 0.0;  ///< Since it touched, s.
-  double horizon = 0.0;   ///< Up to which it is to advance, s.
+  int struckAtOnce = 0;   ///< Impacts since the rock last moved on.
+  double openTime = 0.0;  ///< Time since the rock touched, s.
+  double horizon = 0.0;   ///< Time up to which the rock is to advance, s.
   double nearSince = 0.0; ///< Begin of the contact at hand, s.
   double freeUntil = 0.0; ///< Nothing can be touched until then, after a take-off or over Λ, s.
   std::uint64_t carrying = 0; ///< The features that carried in the last lasting step.

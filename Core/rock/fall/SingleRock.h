@@ -36,7 +36,7 @@ public:
   void beginAsPiece(const Vec3& whole);
   /// Up to this time (s) or to the end; `enough` as in `run`.
   void advance(double until, double enough = std::numeric_limits<double>::infinity());
-  void wake(double time); ///< Goes on after an end, from this time on, s.
+  void wake(double time); ///< The rock goes on after an end, from this time on, s.
   Trajectory finish();
 
   Fall& fall() { return fall_; }

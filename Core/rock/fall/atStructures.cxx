@@ -37,8 +37,8 @@ void breakBarrier(Fall& fall, const BlockState& at, double energy, double taken)
   fall.structures.breakBarrier();
 }
 
-/// Goes on to `at` within a net, which takes what the rock loses and still falls: it is rated by the
-/// energy at its line.
+/// The rock goes on to `at` within a net, which takes what the rock loses and still falls: the net
+/// is rated by the energy at its line.
 void brakeTo(Fall& fall, const BlockState& at)
 {
   RockBody& body = fall.body;

@@ -31,7 +31,7 @@ bool applyBroken(Fall& fall, const StructuresOnWay::Broken& broken);
 
 // Barriers
 
-/// Goes on along this way, on which barriers have taken so much so far (J); whether it hits one.
+/// The rock goes on along a way on which barriers have taken so much so far (J); whether it hits one.
 bool passBarriers(Fall& fall, const Way& way, double taken);
 bool holdsAtBarrier(const Fall& fall); ///< The one that it hits can hold it.
 void meetBarrier(Fall& fall);          ///< The one that it hits, where the rock is.

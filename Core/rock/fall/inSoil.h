@@ -12,7 +12,7 @@ struct Fall;
 /// contacts and candidates are then out of date.
 bool followScar(Fall& fall, double h);
 void closeScar(Fall& fall); ///< The rock is out of the ground.
-/// Goes on through soil, over nothing but the slope and far from Λ for steps of `small` (s).
+/// The rock goes on through soil, over nothing but slope and far from Λ for steps of `small` (s).
 /// Whether anything was done.
 bool flyOverScar(Fall& fall, double small);
 void flyThroughSoil(Fall& fall, double duration); ///< As free flight, braked.

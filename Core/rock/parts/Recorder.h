@@ -40,7 +40,7 @@ public:
   /// before it. What it had until then would else seem to fade since the last knot.
   void beforeJump(const RockBody& body, bool contact);
   void afterJump(const RockBody& body, bool contact);
-  /// Goes on at a later time; in between nothing moved.
+  /// The record goes on at a later time; in between nothing moved.
   void resume(const RockBody& body);
   /// Follows maxima and path length; call for every state that is reached …
   void follow(const BlockState& state);

@@ -45,7 +45,7 @@ struct RockBody
 
   const Block& block;
   bool done = false;                     ///< At rest, gone from the slope or out of time.
-  bool inIsland = false;                 ///< Its last step was that of an island.
+  bool inIsland = false;                 ///< The last step was that of an island.
   bool stiff = false;                    ///< The block's strain has no inertia.
   StepKind steppedAs = StepKind::Impact; ///< In the last step.
   double ringing = 0.0;                  ///< Period of a soft block's slowest strain, s; 0: stiff.

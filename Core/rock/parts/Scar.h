@@ -57,7 +57,7 @@ public:
 
 private:
   double sweepStraight(const Vec3& way, const Poses& at);
-  double sweepTurning(const Vec3& way, const PlacedBlock& rock); ///< As it is at the end.
+  double sweepTurning(const Vec3& way, const PlacedBlock& rock); ///< `rock` as it is at the end.
   /// Books the volume (m³) of a way (m), and what of the rock is inside at its end.
   double book(double volume, const Vec3& way, const Submerged& end);
 

@@ -41,7 +41,7 @@ public:
   bool pending() const { return pending_; }
   /// The one that is under way, if there is one.
   const ImpactEvent* underWay() const { return pending_ ? &event_ : nullptr; }
-  const ImpactEvent& last() const { return event_; } ///< Whether it is over or not.
+  const ImpactEvent& last() const { return event_; } ///< The last impact, over or not.
   /// Time of a spring that stops the rock and throws it back, s.
   double duration(const RockBody& body) const;
 

@@ -47,8 +47,8 @@ public:
 
   // Lengths of a step, s
 
-  double travelLimit(const RockBody& body) const; ///< Goes no further than contacts serve.
-  double impactStep(const RockBody& body) const;  ///< Resolves an impact.
+  double travelLimit(const RockBody& body) const; ///< Step no further than contacts serve, s.
+  double impactStep(const RockBody& body) const;  ///< Step that resolves an impact, s.
   /// The part of a step of `h` that contacts which are closed or close in it allow.
   double touchdownStep(const RockBody& body, double h) const;
   bool mayLast(const RockBody& body, double h) const; ///< A long, damped step is right.

@@ -61,14 +61,14 @@ public:
   // Trees
   std::span<const int> goneTrees() const { return goneTrees_; } ///< Ascending.
   bool isGone(int tree) const;
-  int treeOf(const Contact& contact) const; ///< −1: it is on none.
-  /// Where it is released there is none.
+  int treeOf(const Contact& contact) const; ///< −1: the contact is on none.
+  /// Where the rock is released there is no tree.
   void clearTrees(const PlacedBlock& rock, const BlockState& state);
   /// Whether a stem holds a rock with this motion: the laws of terrain/stemHit.h. What presses
   /// against it by one of these contacts, or is no faster than at rest, it holds up to its capacity.
   bool stemHolds(int tree, const RockBody& body, const BlockState& state,
     std::span<const Contact> contacts) const;
-  /// Those that the last step came against and that cannot hold the rock.
+  /// Trees that the last step came against and that cannot hold the rock.
   std::vector<int> treesHit(const RockBody& body) const;
   /// Trees that the rock is about to touch within `h`, presses against or has `hit`, and that cannot
   /// hold it; whether there were any.
@@ -90,15 +90,15 @@ public:
   /// Finds those whose line is passed, or its straight continuation as near to an end as the rock
   /// is wide (`radius`, m).
   void findBarriers(const Way& way, double gravity, double radius);
-  /// Goes on along this way, on which barriers have taken so much so far (J): notes what records or
-  /// lets the rock pass, and finds the first barrier that stops the rock or breaks, `hit`. After such a one flight goes
-  /// on to those at the same place only; its rest is flown anew.
+  /// The rock goes on along a way on which barriers have taken so much so far (J): notes what records
+  /// or lets it pass, and finds the first barrier that stops it or breaks, `hit`. After such a one
+  /// flight goes on to those at the same place only; its rest is flown anew.
   void passBarriers(const Way& way, double taken, double gravity, const RockBody& body,
     std::vector<StructureEvent>& events);
   const BarrierHit& hit() const { return hit_; }
-  const Barrier& barrierHit() const;                        ///< The one in `hit`.
-  void load(const BarrierLoad& held);                       ///< It held the rock.
-  void breakBarrier() { this->breakBarrier(hit_.barrier); } ///< It did not.
+  const Barrier& barrierHit() const;                        ///< The barrier in `hit`.
+  void load(const BarrierLoad& held);                       ///< The barrier held the rock.
+  void breakBarrier() { this->breakBarrier(hit_.barrier); } ///< The barrier did not.
 
   // Others of the fall
   /// Trees and barriers, by number, and what they have held.
@@ -110,7 +110,7 @@ public:
 
     void addTo(std::vector<BarrierLoad>& loads) const; ///< What is held, by number of barrier.
   };
-  Broken drainBroken();   ///< What it has broken since it was asked last.
+  Broken drainBroken();   ///< What the rock has broken since the last call.
   Broken drainBarriers(); ///< The same without trees.
   /// What others have broken is gone for this rock, too. Whether a tree was near a piece of slope.
   bool apply(const Broken& broken, const SurfacePatch& patch);
@@ -123,10 +123,10 @@ private:
   bool solid_ = false;
   bool barriers_ = false;
   const Surface* surface_;
-  const Obstacles* obstacles_;                             ///< Null if there are none.
-  std::vector<int> goneTrees_;                             ///< Ascending.
-  std::vector<int> brokenBarriers_;                        ///< In the order of breaking.
-  Broken broke_;                                           ///< Of which others have not heard yet.
+  const Obstacles* obstacles_;      ///< Null if there are none.
+  std::vector<int> goneTrees_;      ///< Ascending.
+  std::vector<int> brokenBarriers_; ///< In the order of breaking.
+  Broken broke_;                    ///< Structures that others have not heard of yet.
   const std::vector<BarrierLoad>* barrierLoads_ = nullptr; ///< Null: all are as new.
   std::vector<BarrierPassage> passages_;                   ///< Of the way at hand.
   std::size_t passed_ = 0;                                 ///< How many of them are dealt with.

@@ -63,9 +63,9 @@ public:
   /// Sets the rows up and solves them. Bodies and contacts stay where they are until `finish`.
   void begin(const StepRequest& request, Accept accept, std::vector<IslandBody>& bodies,
     std::vector<IslandContact>& contacts);
-  /// Whether it is worth a look where the bodies would be.
+  /// Whether a look where the bodies would be is worth it.
   bool asksForALook() const { return looking_ && seen_.asksFor(look_); }
-  /// Goes on from where it is with what a look has found: contacts behind those that are known,
+  /// The step goes on with what a look has found: contacts behind those that are known,
   /// whose `distance` is that at the end, the rest of them as all stands at the start.
   void goOn(const EndDetectionOutcome& seen);
   /// Advances the bodies' states and the contacts by `request.duration`. If the step has not
@@ -96,8 +96,8 @@ private:
   void run();     ///< All substeps, from where the movers start.
   void substep(int k);
   void updateGaps(std::size_t strip);          ///< Gaps, books and who strikes.
-  void arriveAt(std::size_t row, bool placed); ///< `placed`: it stands where the rocks are.
-  /// Goes on with the impulses of the last substep, and keeps those of deep rocks as they are now.
+  void arriveAt(std::size_t row, bool placed); ///< `placed`: the row stands where the rocks are.
+  /// Begins with the impulses of the last substep, and keeps those of deep rocks as they are now.
   void warm(std::size_t strip);
   void warm(soft::ContactRow& row);
   void keepPushing(std::size_t strip);     ///< Busy manifolds that push; notes their rocks.
@@ -116,7 +116,7 @@ private:
   int look_ = 0;                      ///< Number of the next look.
   bool looking_ = false;              ///< The last look has left something to solve for.
   soft::Movers movers_{ step_ };      ///< The rocks.
-  soft::Rows rows_{ step_, movers_ }; ///< Their contacts.
+  soft::Rows rows_{ step_, movers_ }; ///< Contacts of the rocks.
   soft::Sweeps sweeps_{ rows_ };      ///< Which rows are swept over.
   soft::Pivots pivots_{ step_, movers_, rows_ };
   soft::Impacts impacts_{ step_, movers_, rows_, sweeps_ };

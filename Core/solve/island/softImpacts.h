@@ -65,7 +65,7 @@ public:
   bool staysOpen(std::size_t row) const; ///< Within the substep, at its speed `before`.
   /// The manifold's rows strike.
   void start(std::size_t manifold, std::size_t strip);
-  /// Those that are to strike, at a time from the step's beginning (s), and what they set going.
+  /// Impacts that are to strike, at a time from the step's beginning (s), and what they set going.
   void strike(double time);
 
 private:
@@ -77,12 +77,12 @@ private:
   bool anyCloses() const;          ///< Whether a row that is to strike closes.
   void beginRound(ImpactRound& round);
   void settleAll(std::size_t count);
-  bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.
+  bool settle(Impact& impact); ///< Whether the impact changed by more than it is exact to.
   /// Impacts that share rocks, one with the next, give no more than was there: else a share.
   void limitGains();
   void scaleBack(const ImpactRound& round); ///< The rest of a share.
   void book(const ImpactRound& round, double time);
-  void note(const Impact& impact, double time);   ///< Its speed, and the rocks it struck.
+  void note(const Impact& impact, double time);   ///< Speed of the impact, and the rocks it struck.
   void findStruck(std::size_t strip, int number); ///< Rows that close by round `number`.
   void listWoken(std::size_t strip);              ///< Among those that are busy.
 

@@ -35,12 +35,12 @@ public:
   }
 
   void resize() { all_.resize(rows_.manifolds.size()); }
-  /// Goes on with the moment of the last substep.
+  /// Begins with the moment of the last substep.
   void warm(std::size_t manifold);
   /// Whether a manifold pivots: `pushing` of its rows push, `last` the last of them.
   void find(std::size_t manifold, int pushing, std::size_t last);
   void relax(std::size_t manifold);
-  void book(std::size_t manifold); ///< What it takes.
+  void book(std::size_t manifold); ///< What the moment takes.
 
 private:
   const Step& step_;

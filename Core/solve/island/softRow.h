@@ -42,7 +42,7 @@ struct alignas(64) ContactRow
 struct ContactRowCold
 {
   bool flipped;   ///< `a` is the contact's second rock.
-  bool jams;      ///< Has been stopped in the substep as one of a jam.
+  bool jams;      ///< The row was stopped in the substep as one of a jam.
   double gap0;    ///< Where the step begins, m.
   double spring;  ///< pₙ, N/m
   double before;  ///< Speed along the normal before an impact round, m/s.

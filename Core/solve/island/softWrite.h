@@ -36,7 +36,7 @@ private:
     double rocks;     ///< Work of other rocks on it, J.
     double held;      ///< In springs on the slope where the step began, J.
     double strongest; ///< Impulse of a contact, N s.
-    std::size_t by;   ///< That contact's row.
+    std::size_t by;   ///< Row of this contact.
   };
 
   const Step& step_;
