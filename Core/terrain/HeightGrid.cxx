@@ -278,4 +278,21 @@ double HeightGrid::elevation(double x, double y) const
   return a.z() - (n.x() * (x - a.x()) + n.y() * (y - a.y())) / n.z();
 }
 
+double lengthWithoutGround(const HeightGrid& grid, std::span<const Eigen::Vector2d> line)
+{
+  double without = 0.0;
+  for (std::size_t k = 1; k < line.size(); ++k)
+  {
+    const Eigen::Vector2d way = line[k] - line[k - 1];
+    const int steps =
+      int(std::clamp(std::ceil(2.0 * way.norm() / grid.geometry().cellSize), 1.0, 1e5));
+    for (int i = 0; i < steps; ++i)
+    {
+      const Eigen::Vector2d place = line[k - 1] + (i + 0.5) / steps * way;
+      without += grid.cfeAt(place.x(), place.y()) != 0 ? 0.0 : way.norm() / steps;
+    }
+  }
+  return without;
+}
+
 } // namespace rockfall

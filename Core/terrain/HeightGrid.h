@@ -127,4 +127,7 @@ private:
   double lowest_ = 0.0;
 };
 
+/// Length of a line over which there is no ground, looked at every half of a cell, m.
+double lengthWithoutGround(const HeightGrid& grid, std::span<const Eigen::Vector2d> line);
+
 } // namespace rockfall

@@ -1,11 +1,15 @@
 #include "results/collectorOutputs.h"
 
+#include "base/Tally.h"
 #include "base/abort.h"
 #include "base/errors.h"
+#include "base/text/numberText.h"
+#include "geometry/polyline.h"
 #include "shared/cells.h"
 #include "shared/columns.h"
 #include "shared/inputContent.h"
 #include "shared/terrainFieldData.h"
+#include "terrain/HeightGrid.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -21,6 +25,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <limits>
@@ -156,8 +161,34 @@ std::vector<LostRocks> lostBefore(
   return lost;
 }
 
+void askAfterGroundUnder(
+  std::span<const CollectorLine> lines, const HeightGrid& slope, std::vector<std::string>& notes)
+{
+  Tally beyond;
+  for (const CollectorLine& line : lines)
+  {
+    const double without = lengthWithoutGround(slope, line.points);
+    beyond.look(without > 2.0 * slope.geometry().cellSize,
+      [&]
+      {
+        return "\"" + line.name + "\" on " + numberText(std::round(without)) + " of " +
+          numberText(std::round(lengthOf(line.points))) + " m";
+      });
+  }
+  beyond.tell(notes, "",
+    " of " + std::to_string(lines.size()) + " lines go on where the slope has no ground, first ",
+    ": nothing comes there that could be counted");
+}
+
+bool liesAcross(const RockPath& path, const CollectorLine& line)
+{
+  return path.rested && !path.points.empty() &&
+    distanceTo(line.points, path.points.back().position.head<2>()) < 0.5 * path.width;
+}
+
 std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
-  std::span<const CollectorLine> lines, std::span<const LostRocks> lost)
+  std::span<const CollectorLine> lines, std::span<const LostRocks> lost,
+  std::span<const std::int64_t> across)
 {
   constexpr std::size_t kMostNames = 5; // in a note
   std::vector<std::string> notes;
@@ -200,6 +231,16 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
   {
     notes.push_back("No rock reached " + named(missed));
   }
+  Tally lying;
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    lying.look(k < across.size() && across[k] > 0,
+      [&] { return "\"" + lines[k].name + "\" by " + std::to_string(across[k]); });
+  }
+  lying.tell(notes, "On ",
+    " of " + std::to_string(lines.size()) +
+      " lines rocks lie whose centre has not passed it, first ",
+    ": they do not count. Draw a line half a rock before what it stands for");
   std::ranges::move(
     lostNotes(
       most, lines.size() == 1 ? " before they passed the line" : " before they passed a line"),

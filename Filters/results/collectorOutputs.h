@@ -14,6 +14,11 @@ class vtkFieldData;
 class vtkPolyData;
 class vtkTable;
 
+namespace rockfall
+{
+class HeightGrid;
+}
+
 namespace rockfall::filters
 {
 
@@ -55,10 +60,20 @@ bool isReleased(const ReleasedRocks& rocks, const Crossing& crossing);
 std::vector<LostRocks> lostBefore(
   std::size_t lines, std::span<const Crossing> crossings, const ReleasedRocks& released);
 
-/// Notes on lines that no rock reached, that rocks may have been lost before,
-/// that too few passed for the quantiles, and that these are of rocks of different frequencies.
+/// Note on lines that go on where the slope has no ground: over two cells, as borders are drawn by
+/// eye.
+void askAfterGroundUnder(
+  std::span<const CollectorLine> lines, const HeightGrid& slope, std::vector<std::string>& notes);
+
+/// Whether a rock came to rest across a line that its centre has not passed.
+bool liesAcross(const RockPath& path, const CollectorLine& line);
+
+/// Notes on lines that no rock reached, that rocks lie on (`across`, of each line), that rocks may
+/// have been lost before, that too few passed for the quantiles, and that these are of rocks of
+/// different frequencies.
 std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
-  std::span<const CollectorLine> lines, std::span<const LostRocks> lost);
+  std::span<const CollectorLine> lines, std::span<const LostRocks> lost,
+  std::span<const std::int64_t> across = {});
 
 /// The polylines of `input`, without `origin`; named "line 1" and so on, with
 /// the barrier of `barrier`. Throws DataError if there is none or one has fewer

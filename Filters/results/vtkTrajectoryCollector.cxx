@@ -244,6 +244,7 @@ struct Collected
   rockfall::filters::ReleasedRocks released;
   std::vector<rockfall::LineSummary> summaries; ///< Of each line.
   std::vector<rockfall::LostRocks> lost;        ///< Likewise, before they passed it.
+  std::vector<std::int64_t> across;             ///< Rocks and pieces that lie across it.
 };
 
 /// All crossings of all lines.
@@ -251,6 +252,7 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
   const Vec3& origin, const rockfall::Terrain* terrain)
 {
   Collected collected;
+  collected.across.resize(lines.size());
   std::vector<rockfall::Crossing> all, found;
   vtkDataArray* frequency = trajectories->GetCellData()->GetArray("Frequency");
   vtkDataArray* fate = trajectories->GetCellData()->GetArray("Fate"); // forEachPath asks for it
@@ -263,6 +265,8 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
       {
         found.clear();
         rockfall::appendCrossings(path, lines[k], int(k), terrain, found);
+        const bool lies = found.empty() && lines[k].offset == 0.0;
+        collected.across[k] += lies && rockfall::filters::liesAcross(path, lines[k]) ? 1 : 0;
         for (rockfall::Crossing& crossing : found)
         {
           crossing.frequency = frequency ? frequency->GetTuple1(cell) : crossing.frequency;
@@ -384,6 +388,10 @@ int vtkTrajectoryCollector::RequestData(
         lines.push_back(lineThrough(points, rocks, origin, barrier));
       }
       nameApart(lines, notes);
+      if (slope)
+      {
+        filters::askAfterGroundUnder(lines, *slope, notes);
+      }
       lookAtBarriers(lines, notes);
       rockfall::addParallels(lines, this->ParallelLines, this->ParallelSpacing);
       const Collected collected = collect(trajectories, lines, origin, slope);
@@ -403,7 +411,8 @@ int vtkTrajectoryCollector::RequestData(
       }
       else
       {
-        std::ranges::move(filters::lineNotes(collected.summaries, lines, collected.lost),
+        std::ranges::move(
+          filters::lineNotes(collected.summaries, lines, collected.lost, collected.across),
           std::back_inserter(notes));
       }
       vtkFieldData* const told[] = { table->GetFieldData(), passings->GetFieldData() };

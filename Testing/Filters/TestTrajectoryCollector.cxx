@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace
 {
@@ -234,6 +235,25 @@ TEST_F(TestTrajectoryCollector, LineThatNobodyComesToHasNoPassage)
   ASSERT_EQ(this->Table(1)->GetNumberOfRows(), 1);
   EXPECT_EQ(this->Number("Rocks"), 0);
   EXPECT_TRUE(this->Heard->Errors.empty());
+}
+
+/// Lines count centres: a rock of 3 m that rests 1 m before one lies across it, and is told.
+TEST_F(TestTrajectoryCollector, RocksThatLieAcrossALineAreTold)
+{
+  this->Paths.Data->GetCellData()->GetArray("Width")->SetTuple1(4, 3.0); // rests at 500005
+  for (const auto& [x, told] : { std::pair(500006, 1), std::pair(500007, 0) })
+  {
+    this->Heard->Notes.clear();
+    this->Filter->SetFileName(this->Json(R"({ "name": "road" })", x).c_str());
+    EXPECT_EQ(this->Number("Rocks"), 4);
+    EXPECT_EQ(std::count_if(this->Heard->Notes.begin(), this->Heard->Notes.end(),
+                [](const std::string& note)
+                {
+                  return note.find("On 1 of 1 lines rocks lie whose centre has not passed it, "
+                                   "first \"road\" by 1") != std::string::npos;
+                }),
+      told);
+  }
 }
 
 TEST_F(TestTrajectoryCollector, BadInput)

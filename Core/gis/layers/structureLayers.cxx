@@ -2,6 +2,7 @@
 
 #include "base/Tally.h"
 #include "base/errors.h"
+#include "geometry/polyline.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/structureRows.h"
 #include "terrain/Obstacles.h"
@@ -27,24 +28,12 @@ void askAfterGroundUnder(
   Tally beyond;
   for (const Barrier& barrier : barriers)
   {
-    double without = 0.0, all = 0.0;
-    for (std::size_t k = 1; k < barrier.points.size(); ++k)
-    {
-      const Eigen::Vector2d way = barrier.points[k] - barrier.points[k - 1];
-      const int steps = int(std::clamp(std::ceil(2.0 * way.norm() / cell), 1.0, 1e5));
-      for (int i = 0; i < steps; ++i)
-      {
-        const Eigen::Vector2d place = barrier.points[k - 1] + (i + 0.5) / steps * way;
-        const bool ground = terrain.cfeAt(place.x(), place.y()) != 0;
-        without += ground ? 0.0 : way.norm() / steps;
-      }
-      all += way.norm();
-    }
+    const double without = lengthWithoutGround(terrain, barrier.points);
     beyond.look(without > 2.0 * cell,
       [&]
       {
         return std::to_string(barrier.feature) + " on " + number(std::round(without)) + " of " +
-          number(std::round(all)) + " m";
+          number(std::round(lengthOf(barrier.points))) + " m";
       });
   }
   beyond.tell(notes, "",
