@@ -18,18 +18,47 @@
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkObjectFactory.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 vtkStandardNewMacro(vtkHazardMapWriter);
 
 namespace
 {
+
+/// What a reader of the file has to know of the map: numbers, as its thresholds and the rocks that
+/// were lost, and notes.
+std::vector<std::pair<std::string, std::string>> statementsOf(vtkFieldData* fields)
+{
+  std::vector<std::pair<std::string, std::string>> statements;
+  for (int k = 0; k < fields->GetNumberOfArrays(); ++k)
+  {
+    vtkAbstractArray* array = fields->GetAbstractArray(k);
+    const std::string name = array->GetName() ? array->GetName() : "";
+    if (auto* notes = vtkStringArray::SafeDownCast(array); notes && name == "Notes")
+    {
+      for (vtkIdType n = 0; n < notes->GetNumberOfValues(); ++n)
+      {
+        statements.emplace_back("Note " + std::to_string(n + 1), notes->GetValue(n));
+      }
+    }
+    auto* number = vtkDataArray::SafeDownCast(array);
+    if (number && number->GetNumberOfValues() == 1 && !name.empty() && !name.starts_with("Terrain"))
+    {
+      statements.emplace_back(name, rockfall::numberText(number->GetTuple1(0), 15));
+    }
+  }
+  return statements;
+}
 
 rockfall::MapImage mapOf(vtkImageData* image)
 {
@@ -60,6 +89,7 @@ rockfall::MapImage mapOf(vtkImageData* image)
   map.crs = rockfall::filters::readCrs(image->GetFieldData());
   map.metadata.emplace_back(
     "Trajectories", std::to_string(std::int64_t(marker->GetComponent(0, 5))));
+  std::ranges::move(statementsOf(image->GetFieldData()), std::back_inserter(map.metadata));
   vtkCellData* cells = image->GetCellData();
   for (int k = 0; k < cells->GetNumberOfArrays(); ++k)
   {

@@ -13,6 +13,8 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 namespace
@@ -518,6 +520,28 @@ TEST_F(TestRockfallHazardMap, WrittenAsGeoTiff)
   writer->Write();
   this->ExpectOneError({ "5 x 2.5 m", "square" });
   EXPECT_EQ(rockfall::readRaster(path, { .cellSize = 0.0, .band = 2 }).heights, rocks);
+}
+
+/// A file that goes from hand to hand says by itself what is left out, and whom the run lost.
+TEST_F(TestRockfallHazardMap, AGeoTiffHasTheNumbersAndNotesOfItsMap)
+{
+  this->Paths.AddLevel(0, 0, { 500001, 5100003, 50 }, 20, 10);
+  this->Paths.AddLevel(0, 1, { 500001, 5100013, 50 }, 20, 10, 2.0, 2); // still moves
+  this->Filter->SetCellSize(5.0);
+  this->Filter->SetLeastReach(0.25);
+  vtkNew<vtkHazardMapWriter> writer;
+  const std::string path = this->WriteFile("map.tif", "");
+  writer->SetFileName(path.c_str());
+  writer->SetInputConnection(this->Filter->GetOutputPort());
+  EXPECT_EQ(writer->Write(), 1);
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes{ std::istreambuf_iterator<char>(in), {} };
+  for (const char* item : { "<Item name=\"LeastReach\">0.25</Item>",
+         "<Item name=\"RocksMoving\">1</Item>", "<Item name=\"Trajectories\">2</Item>",
+         "<Item name=\"Note 1\">1 of 2 rocks were still moving" })
+  {
+    EXPECT_NE(bytes.find(item), std::string::npos) << item;
+  }
 }
 
 TEST_F(TestRockfallHazardMap, BadInput)
