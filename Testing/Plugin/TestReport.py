@@ -79,6 +79,7 @@ for word in ("WGS 84 / UTM zone 16N", "preset Talus (assumed): Lu et al. (2019)"
     assert word in text, word
 sections = re.findall(r"<h2>(\d+) ", page)
 assert sections == [str(k) for k in range(1, 12)], sections
+assert "judged by the height of the rock's top" in text and "by the rock's lowest point" not in text
 line, other = (row for row in rows_of("whole/lines.csv") if float(row["Offset"]) == 0.0)
 energy = tables.number(float(line["KineticEnergy95"]) / 1000.0).replace("\u2009", " ")
 assert f"rocks that pass {line['Rocks']} " in text
