@@ -205,12 +205,20 @@ def refuse_passages(stems, error):
             refuse_damaged(stem + ".passages")
 
 
+def tell(notes, of_map):
+    """The study's notes, but for those that its map has told of the same rocks."""
+    told = of_map and of_map.GetAbstractArray("Notes")
+    told = {told.GetValue(k) for k in range(told.GetNumberOfValues())} if told else ()
+    for note in notes:
+        if note not in told:
+            say(note)
+
+
 def combine(study, folder, stems, iterations, structures=None):
     """The results of the whole study, from the files of its chunks alone; `structures` are what stands on the slope."""
     hashes, notes = from_first_rank(lambda: combine_tables(folder, stems))
-    if "map" not in study:  # which tells the same of the same rocks
-        for note in notes:
-            say(note)
+    if "map" not in study:
+        tell(notes, None)
     if "lines" in study:
         merge = servermanager.filters.MergeCollectors().GetClientSideObject()
         design = make(servermanager.filters.BarrierDesign, "lines", schema.shared_out("lines", study["lines"])[1])
@@ -221,6 +229,7 @@ def combine(study, folder, stems, iterations, structures=None):
         UpdatePipeline(proxy=hazard)
         error = hazard.GetClientSideObject().GetOutputDataObject(0).GetFieldData().GetAbstractArray("Error")
         from_first_rank(lambda: error and refuse_passages(stems, error.GetValue(0)))
+        tell(notes, hazard.GetClientSideObject().GetOutputDataObject(0).GetFieldData())
         writer = servermanager.writers.HazardMapWriter(Input=hazard)
         write_by(writer, os.path.join(folder, "hazard.tif"))
         cells = output(hazard).GetCellData()

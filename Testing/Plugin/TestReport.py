@@ -51,6 +51,7 @@ def finish(folder, description):
     write_text("study.json", json.dumps(description))
     said = run("study.py", folder, "study.json")
     assert "Done" in said, said
+    return said
 
 
 finish("whole", study)
@@ -197,10 +198,12 @@ for word in ("The study makes no map", "The study has no lines", "the test slope
 
 
 # Rocks that break count once, and reach as far as their farthest piece.
-finish("pieces", {"rocks": study["rocks"], "map": {
+said = finish("pieces", {"rocks": study["rocks"], "map": {
     "CellSize": 5.0, "AnnualFrequency": 1.0, "EnergyThresholds": [300, 20, 60], "ReturnPeriods": [0.5, 30]}, "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)"}, "simulation": {
     **study["simulation"], "Fragmentation": 1, "FragmentationEnergy": 2e4, "FractalDimension": 2.0, "LeastFragment": 0.1},
     "iterations": 2, "chunk": 2})
+# The map of a study tells whom it lost, once, and the study all else.
+assert "rocks broke in impacts of 20000 J/m³ or more" in said and "still moving" not in said, said
 assert "Report: " in run("report.py", "pieces")
 with open("pieces/report.html", encoding="utf-8") as file:
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", file.read())).split())
