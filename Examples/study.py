@@ -70,6 +70,7 @@ from wholefile import write_npz, write_polydata, write_text
 
 PARTS = tuple(schema.PROXIES)  # of a study: properties of proxies
 OWN = "Iterations", "FirstIteration", "ShownIteration", "NumberOfThreads"  # of the simulation: this script's
+LOOK = 0.05  # s: of a run as short as that no losses are told
 lock = None  # of the folder, on the first rank
 inputs = None  # the files, on the first rank
 
@@ -157,7 +158,7 @@ class Pipeline:
 
     def check(self, folder):
         """Reads every input and makes everything once, of one iteration's first moment: what is wrong
-        with a file is told before the first chunk, not after it."""
+        with a file is told before the first chunk, not after it. Whom that moment loses is no loss of the study."""
         simulation = self.simulation
         before = simulation.EndTime, simulation.PrintProgress
         # Two: what makes iterations alike is told here.

@@ -109,6 +109,18 @@ TEST_F(TestLostRocks, TheEdgeOfTheMapIsNoHole)
   EXPECT_EQ(value(this->Summary()->GetFieldData(), "RocksInNodata"), 0);
 }
 
+/// A run of a moment, with which a study looks at its inputs, keeps what it loses and tells nothing.
+TEST_F(TestLostRocks, ALookAtTheInputsTellsNoLosses)
+{
+  this->MakeSlope(100, 100, 0, 0);
+  this->FilterTest::Heard->Notes.clear();
+  this->Rocks->SetVelocity(-700.0, 0.0, 600.0);
+  this->Run->SetEndTime(0.05);
+  this->Run->Update();
+  EXPECT_TRUE(Notes(this->Summary(), "4 of 4 rocks went over the edge of the DEM"));
+  EXPECT_FALSE(this->Heard("over the edge"));
+}
+
 TEST_F(TestLostRocks, ASeamBetweenTilesIsAHole)
 {
   this->MakeSlope(36, 44, 0, 40); // as wide as no rock flies over

@@ -97,11 +97,12 @@ assert code == 0 and "Not enough rocks, 100: RunOut95: not known yet" in said, s
 # Twenty chunks tell once whom they lost: ten lines of progress, and the notes of all.
 logs = []
 text = messages_of(lambda: logs.append(run(
-    "enough-notes", iterations=20, chunk=1, simulation={**study["simulation"], "EndTime": 4.0})))
+    "enough-notes", iterations=20, chunk=1, simulation={**study["simulation"], "EndTime": 4.0, "TimeStep": 0.1})))
 text = logs[0][1] + text
 assert logs[0][0] == 0 and len(text.splitlines()) <= 20, text
 moving = re.findall(r"(\d+) of 100 rocks were still moving at EndTime \(4 s\): they count", text)
 rows = rows_of("enough-notes/summary.csv")
+assert "(0.1 s)" not in text and "None of" not in text, text  # of the look at the inputs
 assert moving == [str(sum(row["FateCode"] == "2" for row in rows))] != ["0"], text
 # Of each chunk as of one run; that nothing moved is so where no chunk moved anything.
 notes = [["2 of 9 rocks fell", "None of 9 rocks moved: x"], [], ["1 of 9 rocks fell"]]
