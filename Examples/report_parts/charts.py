@@ -2,13 +2,14 @@
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from enough import quantile_ranks, share_interval
+from enough import lost_before, quantile_ranks, share_interval
 from figures import GREY, PAGE, STYLES, new, picture, place
 
 POINTS = 24  # of a curve of convergence
 CURVES = 4  # of them in a figure
 LONGEST = 30  # letters of a line's name in a chart
 CONFIDENCE = 0.95
+ROCK = ("Iteration", "BlockId")  # tell the rocks of a study from each other
 
 
 def short(name):
@@ -87,25 +88,32 @@ def quantile(values, q=0.95):
     return (np.quantile(np.minimum(values, beside), q) if np.isfinite(beside) else beside), low, high
 
 
-def share(count, total):
-    low, high = share_interval(int(count), int(total), CONFIDENCE)
+def share(count, total, lost):
+    """In %, with its interval; of rocks that were lost before nobody knows whether they count."""
+    low, high = share_interval(int(count), int(total), CONFIDENCE, int(lost))
     return 100.0 * count / total, 100.0 * low, 100.0 * high
 
 
 def first_passings(study, name):
-    """Iteration and energy (kJ) of each rock that passes a line, when it does so first; of one that broke the
+    """Rock (iteration, block) and energy (kJ) of each rock that passes a line, when it does so first; of one that broke the
     largest of its pieces."""
     table = study.crossings
     if not len(table):
-        return np.empty(0), np.empty(0)
+        return np.empty((0, 2)), np.empty(0)
     own = (table["LineName"] == name) & (table["Passing"] == 0)
-    iteration, energy = table["Iteration"][own], table["KineticEnergy"][own] / 1000.0
+    rocks, energy = np.stack([table[key][own] for key in ROCK], axis=1), table["KineticEnergy"][own] / 1000.0
     if "Piece" in table and len(energy):
-        rocks, of = np.unique([iteration, table["BlockId"][own]], axis=1, return_inverse=True)
-        largest = np.zeros(rocks.shape[1])
+        rocks, of = np.unique(rocks, axis=0, return_inverse=True)
+        largest = np.zeros(len(rocks))
         np.maximum.at(largest, of.ravel(), energy)
-        iteration, energy = rocks[0], largest
-    return iteration, energy
+        energy = largest
+    return rocks, energy
+
+
+def lost(study, passed, last=np.inf):
+    """How many rocks of the iterations up to this one were lost before a line that these rocks passed."""
+    endless = np.stack([study.rocks[key] for key in ROCK], axis=1)[study.rocks["Endless"] & (study.rocks["Iteration"] <= last)]
+    return lost_before(map(tuple, endless.tolist()), map(tuple, passed.tolist()))
 
 
 def settling(study, names):
@@ -117,9 +125,10 @@ def settling(study, names):
     ways = np.where(study.rocks["Endless"], np.inf, study.rocks["RunOut"])
     curves = [("", "run-out, 95 %", "m", [quantile(ways[iteration <= order[end - 1]]) for end in ends])]
     for name in names:
-        when, energy = first_passings(study, name)
+        passed, energy = first_passings(study, name)
+        when = passed[:, 0]
         curves.append((name, "share that passes", "%", [
-            share((when <= order[end - 1]).sum(), total) for end, total in zip(ends, totals)]))
+            share((when <= order[end - 1]).sum(), total, lost(study, passed, order[end - 1])) for end, total in zip(ends, totals)]))
         curves.append((name, "energy, 95 %", "kJ", [quantile(energy[when <= order[end - 1]]) for end in ends]))
     return totals, curves
 
@@ -149,5 +158,5 @@ def curves_of(totals, curves):
         axes.grid(lw=0.2, alpha=0.6)
         if k >= len(curves) - 2:
             axes.set_xlabel("rocks")
-    return picture(figure, "Value after so many rocks, and its 95 % interval: shares by Clopper & Pearson, quantiles by order "
-                   "statistics. Where no band is, too few rocks came, or too many left the DEM, still moved or were lost in nodata.", "Convergence")
+    return picture(figure, "Value after so many rocks, and its 95 % interval: shares by Clopper & Pearson, rocks lost before the line "
+                   "counted both ways, quantiles by order statistics. Where no band is, too few rocks came, or too many left the DEM, still moved or were lost in nodata.", "Convergence")

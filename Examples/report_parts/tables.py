@@ -7,6 +7,7 @@ import re
 import numpy as np
 
 import charts
+from enough import most_of_none
 from identity import differences
 from schema import Bad
 
@@ -30,6 +31,8 @@ LINES = (("Rocks", "rocks that pass", "", 1.0), ("Passings", "passings", "", 1.0
          ("CaughtShareError", "± standard error of it", "%", 100.0),
          *((name + end, f"{text}, {stat}", unit, factor) for name, text, unit, factor in QUANTITIES
            for end, stat in STATISTICS))
+LOST = (("MovingBefore", "still moved at the end of the simulated time"), ("OverEdgeBefore", "left over the edge of the slope"),
+        ("InNodataBefore", "were lost in nodata"))  # columns of lines.csv
 YIELDING = (("M_E", "MN/m²"), ("scar factor", ""), ("density", "kg/m³"), ("C_s", ""), ("spin drag", ""), ("μ min", ""),
             ("μ max", ""), ("κ", "1/m"), ("β", "1/s"), ("μ_r", ""), ("softness, deviation", ""), ("softness, length", "m"), ("scar radius", "m"))
 
@@ -247,13 +250,21 @@ def quantile_of(column):
     return int(found.group(1)) if found else 0
 
 
+def lost(study, row):
+    """Rocks that were lost before they came to a line."""
+    return sum(int(study.lines[column][row]) for column, _ in LOST)
+
+
 def often(study, row):
-    """How often a line is passed, 1/a; of one that nothing passed the limit, with 95 % confidence, as maps have it."""
+    """How often a line is passed, 1/a; of one that nothing passed the limit, with 95 % confidence, as maps have it, if no
+    rock was lost before it."""
     frequency = study.places["AnnualFrequency"][row]
     together = study.values.get("lines", {}).get("AnnualFrequency") or 0.0
-    most = together / len(study.rocks) if together else \
-        study.rocks["Frequency"].max() / study.iterations if "Frequency" in study.rocks else math.nan
-    return f"below {number(math.log(20.0) * most)}" if frequency == 0.0 and math.isfinite(most) else number(frequency)
+    if frequency != 0.0 or not (together or "Frequency" in study.rocks):
+        return number(frequency)
+    total = len(study.rocks)
+    each = np.full(total, together / total) if together else study.rocks["Frequency"] / study.iterations
+    return f"below {number(min(each.sum(), most_of_none(total, lost(study, row)) * each.max()))}"
 
 
 def lines(study):
@@ -263,7 +274,7 @@ def lines(study):
     known = {name for name, *_ in LINES}
     names = [(name, *rest) for name, *rest in LINES if name in table]
     names += [(name, name, "", 1.0) for name in table.names if name not in known and name not in (
-        "Line", "LineName", "Offset", "MovingBefore", "OverEdgeBefore", "InNodataBefore")]
+        "Line", "LineName", "Offset", *(column for column, _ in LOST))]
     for name, label, unit, factor in names:
         values = table[name][given]
         few = (table["HighestQuantile"][given] < quantile_of(name)) & (table["Rocks"][given] > 0)
@@ -273,6 +284,8 @@ def lines(study):
     if np.isfinite(yearly).any():
         rows.insert(SHARES, ("a rock passes every", "a", [number(1.0 / f) if f > 0.0 else "–" for f in yearly]))
         rows.insert(SHARES, ("rocks that pass", "1/a", [often(study, k) for k in given]))
+    shares = [charts.share(table["Rocks"][k], len(study.rocks), lost(study, k)) for k in given]
+    rows.insert(SHARES, ("95 % limits of the share", "%", [f"{number(low)} to {number(high)}" for _, low, high in shares]))
     return side_by_side([str(table["LineName"][k]) for k in given], rows)
 
 
@@ -312,9 +325,9 @@ def design(study):
 
 def passing(study, name):
     """Of a line by its name: how many pass, how often, with how much energy."""
-    energy = charts.first_passings(study, name)[1]
+    passed, energy = charts.first_passings(study, name)
     texts = []
-    for value, low, high in (charts.share(len(energy), len(study.rocks)), charts.quantile(energy)):
+    for value, low, high in (charts.share(len(energy), len(study.rocks), charts.lost(study, passed)), charts.quantile(energy)):
         known = math.isfinite(low)
         texts.append(number(value) + (f" ({number(low)} to {number(high)})" if known else FEW if math.isfinite(value) else ""))
     row = list(study.lines["LineName"]).index(name)
@@ -389,19 +402,18 @@ def notes(study):
         for k in study.given_lines():
             name, count = study.lines["LineName"][k], int(study.lines["Rocks"][k])
             if count == 0:
-                made.append(f"No rock reached line {name}: of {total} rocks the share that passes is below "
-                            f"{number(300.0 / total)} % with 95 % confidence.")
+                before = lost(study, k)
+                made.append(f"No rock reached line {name}: of {total} rocks" + (f", of which {before} were lost before it," if before else "") +
+                            f" the share that passes is below {number(100.0 * most_of_none(total, before) / total)} % with 95 % confidence.")
             elif study.lines["HighestQuantile"][k] < 99:
                 few = study.lines["HighestQuantile"][k] < 95
                 made.append(f"{count} {'rock' if count == 1 else 'rocks'} passed line {name}: too few for its " +
                             ("95 % values, which take 59, and 99 %, which take 299. Those numbers are too low." if few else
                              "99 % values, which take 299. Those are too low."))
-            for column, text in (("MovingBefore", "still moved at the end of the simulated time"),
-                                 ("OverEdgeBefore", "left over the edge of the slope"),
-                                 ("InNodataBefore", "were lost in nodata")):
-                lost = int(study.lines[column][k])
-                if lost:
-                    made.append(f"{lost} {'rock' if lost == 1 else 'rocks'} {text} before they came to line {name}.")
+            for column, text in LOST:
+                gone = int(study.lines[column][k])
+                if gone:
+                    made.append(f"{gone} {'rock' if gone == 1 else 'rocks'} {text} before they came to line {name}.")
     return [note if note.endswith((".", "?")) else note + "." for note in made]
 
 

@@ -10,8 +10,7 @@ AT_LINES = ("Share", "KineticEnergy95")  # as lines.csv has them
 REACH = "RunOut95"  # of RunOut in summary.csv
 QUANTITIES = (*AT_LINES, REACH)
 KNOWN = ("quantity", "within", "confidence", "line")
-LOST = (2, 4)  # FateCode: moving at EndTime, in nodata. They may come to a line yet
-ENDLESS = (1, *LOST)  # those that left the DEM, too: how far they go is not known
+ENDLESS = (1, 2, 4)  # FateCode: left the DEM, moving at EndTime, in nodata: how far they go, and to which line, is not known
 
 
 def check(path, study):
@@ -78,6 +77,25 @@ def share_interval(count, total, confidence, lost=0):
     return low, high
 
 
+def lost_before(endless, passed):
+    """How many rocks were lost before a line: of those whose way has no known end, as keys, all that did not pass it. Each
+    may pass it yet, or not, so it counts as both: the one rule of `until` and of reports."""
+    return len(set(endless) - set(passed))
+
+
+def most_of_none(total, lost):
+    """Upper limit, with 95 % confidence, of how many of `total` rocks pass a line that none was seen to pass: Poisson's, of
+    as many passings as rocks were lost before it. Of none lost it is ln 20, the rule of three."""
+    k = np.arange(lost + 1)
+    logs = np.cumsum(np.log(np.maximum(k, 1)))  # of k!
+
+    def more(share):  # than so many passings of so many expected ones
+        expected = share * total
+        return 1.0 - np.exp(k * math.log(expected) - expected - logs).sum()
+
+    return total * solve(more, 0.95)
+
+
 def quantile_ranks(total, q, confidence):
     """Ranks, from 1, of the values between which the quantile is; None where there are too few."""
     tail = 0.5 * (1.0 - confidence)
@@ -141,8 +159,7 @@ class Enough:
             if self.until["quantity"] == REACH:
                 self.ways.extend(np.where(endless, np.inf, ways))
                 return
-            lost = np.isin(chunk["FateCode"], LOST)
-            rocks_lost = set(zip(chunk["Iteration"][lost], chunk["BlockId"][lost]))
+            rocks_lost = set(zip(chunk["Iteration"][first][endless], chunk["BlockId"][first][endless]))
         points = crossings_of(stem)
         data = points.GetPointData()
         names = data.GetAbstractArray("LineName")
@@ -155,7 +172,7 @@ class Enough:
             if name in self.greatest:
                 self.greatest[name].append(energy)
         for name in self.greatest:
-            before = sum((name, *rock) not in greatest for rock in rocks_lost)
+            before = lost_before(rocks_lost, {key[1:] for key in greatest if key[0] == name})
             self.lost[name] = self.lost.get(name, 0) + before
 
     def state(self):

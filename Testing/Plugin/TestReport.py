@@ -22,6 +22,7 @@ import finished
 import gis
 import maps
 import tables
+from enough import most_of_none
 from identity import content
 
 write_grid("hill.asc", incline())
@@ -73,10 +74,13 @@ text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
 # The study's own: inputs, ground, rocks, structures, lines, versions.
 for name in ("hill.asc", "hill.prj", "rocks.csv", "road.csv", "net.csv", "stems.csv"):
     assert name in text and content(name) in text, name
+lost = sum(row["FateCode"] in "124" for row in rows_of("whole/summary.csv"))
+assert lost > 3
 for word in ("WGS 84 / UTM zone 16N", "preset Talus (assumed): Lu et al. (2019)", "seed 77", "31 × 21 nodes every 10 m",
              "12 rocks, 3 releases in 4 iterations", "4 m high, capacity 1 000 kJ", "Office", "stems that lie 1, diameter 40 to 40 cm; energy that breaks one 194 kJ", "stems 1 on",
              "RockfallDDA", "gives no frequency of release", "source rocks volume, m³: least median largest 1 4 0.5 0.5 0.5", "Cells of the map below LeastReach 0.001 are left empty", "icosahedron 4 0.75 0.75 0.75",
-             "No rock reached line <b>road</b> 700290: of 12 rocks the share that passes is below 25 %"):
+             f"No rock reached line <b>road</b> 700290: of 12 rocks, of which {lost} were lost before it, the share that passes is "
+             f"below {tables.number(100.0 * most_of_none(12, lost) / 12.0)} % with 95 % confidence"):
     assert word in text, word
 sections = re.findall(r"<h2>(\d+) ", page)
 assert sections == [str(k) for k in range(1, 12)], sections
@@ -116,7 +120,8 @@ own.places.columns["AnnualFrequency"] = np.where(own.places["Rocks"] > 0, 0.25, 
 rows = [row for table in tables.lines(own) for row in table["rows"]]
 assert ("a rock passes every", "a", ["4", "–"]) in rows and not tables.fixed_volumes(own), rows
 own.rocks.columns.update(SourceId=np.zeros(12), Frequency=np.full(12, 0.04))
-assert [tables.often(own, k) for k in own.given_lines()] == ["0.25", "below 0.03"]  # ln 20 · 0.04 / 4
+least = f"below {tables.number(most_of_none(12, lost) * 0.04 / 4.0)}"  # below 0.03 if none were lost, as further down
+assert [tables.often(own, k) for k in own.given_lines()] == ["0.25", least]
 assert "count each simulated rock alike" not in " ".join(tables.notes(own))
 own.given["map"]["LeastAngle"] = 27
 assert "energy-line angle is below LeastAngle 27°" in " ".join(tables.notes(own))
@@ -131,6 +136,26 @@ fates = {row["Fate"] for row in rows_of("whole/summary.csv")}
 for fate in fates:
     count = sum(row["Fate"] == fate for row in rows_of("whole/summary.csv"))
     assert f"{fate} {count} {tables.number(100.0 * count / 12.0)}" in text, fate
+
+# Rocks that were lost before a line count both ways in its limits: they may come to it yet.
+ends, few = own.rocks["Endless"].copy(), [one for one in own.given_lines() if own.lines["Rocks"][one] == 0]
+for gone in (0, 5):
+    own.rocks.columns["Endless"] = np.arange(12) < gone
+    for column in ("MovingBefore", "OverEdgeBefore", "InNodataBefore"):
+        own.lines.columns[column] = np.full(len(own.lines), gone if column == "OverEdgeBefore" else 0)
+    high = charts.share(0, 12, gone)[2]
+    assert tables.passing(own, "<b>road</b> 700290")[0] == f"0 (0 to {tables.number(high)})"
+    curve = charts.settling(own, ["<b>road</b> 700290"])[1][1]
+    assert curve[1] == "share that passes" and curve[-1][-1] == charts.share(0, 12, gone), curve
+    assert ("95 % limits of the share", "%", f"0 to {tables.number(high)}") in [
+        (*row[:2], row[2][-1]) for table in tables.lines(own) for row in table["rows"]]
+    below = {0: "below 0.03", 5: "below 0.105"}[gone]  # at most 10.51 rocks of 12, 1/a each 0.04 / 4
+    own.rocks.columns["Frequency"] = np.full(12, 0.04)
+    assert tables.often(own, few[0]) == below, tables.often(own, few[0])
+    told = f"of 12 rocks{', of which 5 were lost before it,' if gone else ''} the share that passes is below {87.6 if gone else 25}"
+    assert told in " ".join(tables.notes(own)), tables.notes(own)
+assert high > 60.0
+own.rocks.columns["Endless"] = ends
 
 # Choices are in the values in force by their names, and how long it took is told.
 with open("whole/manifest.json") as file:
@@ -184,7 +209,7 @@ cells[0, 4], cells[2, 0] = 7.0, -2.0
 small, extent = maps.fewer(cells, (0.0, 10.0, 0.0, 6.0), 3)
 assert small.shape == (2, 3) and small[0, 2] == 7.0 and small[1, 0] == -2.0 and np.isnan(small).sum() == 4
 assert extent == (0.0, 12.0, -2.0, 6.0), extent
-assert charts.share(0, 100)[:2] == (0.0, 0.0) and abs(charts.share(0, 100)[2] - 100 * (1 - 0.025 ** 0.01)) < 1e-6
+assert charts.share(0, 100, 0)[:2] == (0.0, 0.0) and abs(charts.share(0, 100, 0)[2] - 100 * (1 - 0.025 ** 0.01)) < 1e-6
 assert charts.quantile(np.arange(1.0, 11.0))[0] == np.quantile(np.arange(1.0, 11.0), 0.95)
 assert np.isnan(charts.quantile(np.arange(1.0, 11.0))[1])
 
@@ -225,8 +250,9 @@ finish("variant", {**study, "terrain": {name: value for name, value in study["te
 assert "Report: beside.html" in run("report.py", "whole", "--beside", "variant", "--output", "beside.html")
 with open("beside.html", encoding="utf-8") as file:
     text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", file.read())).split())
-count = next(int(row["Rocks"]) for row in rows_of("variant/lines.csv"))
-low, high = charts.share(count, 12)[1:]
+first = rows_of("variant/lines.csv")[0]
+count, before = int(first["Rocks"]), sum(int(first[column]) for column in ("MovingBefore", "OverEdgeBefore", "InNodataBefore"))
+low, high = charts.share(count, 12, before)[1:]
 assert f"{tables.number(100.0 * count / 12.0)} ({tables.number(low)} to {tables.number(high)})" in text
 assert "They differ in terrain BarrierFile; 12 rocks in 4 iterations, and 12 in 4" in text
 assert "pieces: no line has the name of one of whole" in run("report.py", "whole", "--beside", "pieces")

@@ -30,6 +30,11 @@ assert abs(high - low - 2.0 * 1.95996 * 0.0005) < 3e-6, (low, high)
 assert enough.share_interval(4, 20, 0.95, 3) == \
     (enough.share_interval(4, 20, 0.95)[0], enough.share_interval(7, 20, 0.95)[1])
 assert enough.share_interval(0, 20, 0.95, 20) == (0.0, 1.0)
+# Of none that passes at most ln 20 of them, the rule of three; of 4 that may have, 9.154 (Poisson, one-sided); never more
+# than all.
+assert abs(enough.most_of_none(1000, 0) - math.log(20.0)) < 1e-9 and abs(enough.most_of_none(1000, 4) - 9.1535) < 1e-4
+assert abs(enough.most_of_none(20, 15) - 20.0) < 1e-9 and enough.most_of_none(100000, 30000) < 30300
+assert enough.lost_before([(0, 1), (0, 2), (1, 2)], [(0, 2), (7, 7)]) == 2
 
 
 # Order statistics against sums of the binomial distribution.
@@ -44,12 +49,13 @@ for n in (71, 72, 73, 100, 333):
     assert ranks == ((lows[-1], highs[0]) if lows and highs else None), (n, ranks, lows[-1:], highs[:1])
 assert enough.quantile_ranks(10, 0.95, 0.95) is None and enough.quantile_ranks(0, 0.95, 0.95) is None
 
-write_grid("enough.asc", incline())
+write_grid("enough.asc", [[max(z - 75.0, 0.0) for z in row] for row in incline()])  # rocks end on it
+write_grid("enough-edge.asc", incline())  # and beyond this one
 write_text("enough-road.csv", 'WKT,name\n"LINESTRING(700045 3999990,700045 4000230)",near\n'
            '"LINESTRING(700005 3999990,700005 4000230)",far\n')
 study = {
     "terrain": {"FileName": "enough.asc", "Preset": "Meadow (field data)"},
-    "rocks": {"Center": [700025, 4000060, 147], "Amount": 5},
+    "rocks": {"Center": [700025, 4000060, 72], "Amount": 5},
     "simulation": {"EndTime": 60.0, "TrajectoryOutput": "Thinned"},
     "lines": {"FileName": "enough-road.csv"}, "iterations": 12, "chunk": 2}
 
@@ -94,6 +100,13 @@ assert code == 0 and 'Not enough rocks, 60: Share at "near": 0 to 1, as 60 were 
 code, said = run("enough-ways", until={"quantity": "RunOut95", "within": 0.3}, iterations=20, **short)
 assert code == 0 and "Not enough rocks, 100: RunOut95: not known yet" in said, said
 
+# So may those that left the DEM.
+code, said = run("enough-edge", until={"quantity": "Share", "within": 0.2, "line": "far"}, iterations=6,
+                 terrain={**study["terrain"], "FileName": "enough-edge.asc"}, rocks={"Center": [700025, 4000060, 147], "Amount": 5})
+left = sum(row["FateCode"] == "1" for row in rows_of("enough-edge/summary.csv"))
+high = enough.share_interval(0, 30, 0.95, left)[1]
+assert code == 0 and left > 15 and f'Not enough rocks, 30: Share at "far": 0 to {high:.4g}, as {left} were lost' in said, said
+
 # Twenty chunks tell once whom they lost: ten lines of progress, and the notes of all.
 logs = []
 text = messages_of(lambda: logs.append(run(
@@ -119,9 +132,7 @@ for left in (10, 0):
 
 # How far rocks go needs no line: order statistics of RunOut.
 calm = {name: value for name, value in study.items() if name != "lines"}
-write_grid("enough-foot.asc", [[max(z - 75.0, 0.0) for z in row] for row in incline()])  # rocks end on it
-study = {**calm, "terrain": {**calm["terrain"], "FileName": "enough-foot.asc"}, "rocks": {**calm["rocks"], "Center": [700025, 4000060, 72]},
-         "iterations": 40, "chunk": 8}
+study = {**calm, "iterations": 40, "chunk": 8}
 code, said = run("enough-reach", until={"quantity": "RunOut95", "within": 0.3})
 assert code == 0 and "Enough rocks, " in said and "RunOut95: " in said and " m" in said, said
 known = json.loads(files_of("enough-reach")["manifest.json"])["until"]["lines"]
