@@ -107,6 +107,7 @@ struct StructureEvent
   Vec3 velocity = Vec3::Zero();  ///< Before, m/s.
   double kineticEnergy = 0.0;    ///< Translation and rotation, before, J.
   double heightOverGround = 0.0; ///< Of the rock's centre over the slope, m.
+  double topHeight = 0.0;        ///< Of its highest point over the same ground, m.
   double energyTaken = 0.0;      ///< J
   double heldBefore = 0.0;       ///< By a barrier, of other rocks, J.
   double usefulHeight = 0.0;     ///< Of a barrier, from its fill to its rope, before, m.

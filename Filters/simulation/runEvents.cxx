@@ -56,6 +56,7 @@ void addColumns(const RunFrame&, Columns<EventRow<StructureEvent>>& columns)
   columns.add("Speed", [](R row) { return row.event.velocity.norm(); });
   columns.add("KineticEnergy", [](R row) { return row.event.kineticEnergy; });
   columns.add("HeightOverGround", [](R row) { return row.event.heightOverGround; });
+  columns.add("TopHeight", [](R row) { return row.event.topHeight; });
   columns.add("EnergyTaken", [](R row) { return row.event.energyTaken; });
   columns.add("HeldBefore", [](R row) { return row.event.heldBefore; });
   columns.add("UsefulHeight", [](R row) { return row.event.usefulHeight; });

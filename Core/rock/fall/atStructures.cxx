@@ -30,7 +30,7 @@ void breakBarrier(Fall& fall, const BlockState& at, double energy, double taken)
 {
   const BarrierHit& hit = fall.structures.hit();
   StructureEvent event = eventAt(StructureOutcome::BarrierBroken,
-    fall.structures.barrierHit().feature, at, energy, hit.heightOverGround);
+    fall.structures.barrierHit().feature, fall.body.block, at, energy, hit.heightOverGround);
   noteLoad(event, fall.structures.loadOf(hit.barrier), barrierNow(fall));
   event.energyTaken = taken;
   fall.recorder.trajectory().structures.push_back(event);
@@ -243,7 +243,7 @@ void meetBarrier(Fall& fall)
   const double taken = holds ? energy : barrier.absorbs ? net.capacity : 0.0;
   StructureEvent event =
     eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
-      barrier.feature, body.state, energy, hit.heightOverGround);
+      barrier.feature, body.block, body.state, energy, hit.heightOverGround);
   event.energyTaken = taken;
   noteLoad(event, load, net);
   TrajectorySummary& summary = fall.recorder.trajectory().summary;

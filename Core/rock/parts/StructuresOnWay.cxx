@@ -24,8 +24,26 @@ void slowDown(BlockState& state, double energy, double taken)
   state.spin *= factor;
 }
 
-StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
-  double energy, double height)
+namespace
+{
+
+/// How far a block reaches from its centre against a direction, m.
+double reachAgainst(const Block& block, const BlockState& state, const Vec3& side)
+{
+  PlacedBlock placed;
+  placed.place(block, state);
+  double reach = isRound(placed) ? roundReach(roundAxes(placed), side) : 0.0;
+  for (const Vec3& vertex : placed.vertices())
+  {
+    reach = std::max(reach, side.dot(state.position - vertex));
+  }
+  return reach;
+}
+
+} // namespace
+
+StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Block& block,
+  const BlockState& at, double energy, double height)
 {
   StructureEvent event;
   event.outcome = outcome;
@@ -35,6 +53,7 @@ StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Blo
   event.velocity = at.velocity;
   event.kineticEnergy = energy;
   event.heightOverGround = height;
+  event.topHeight = height + reachAgainst(block, at, -Vec3::UnitZ());
   return event;
 }
 
@@ -55,19 +74,6 @@ struct StemHit
   Vec3 along = Vec3::Zero(); ///< Of the rock that slips past the stem.
   Vec3 axis = Vec3::Zero();  ///< The stem pushes square to it; zero: against its end.
 };
-
-/// How far a block reaches from its centre against a direction, m.
-double reachAgainst(const Block& block, const BlockState& state, const Vec3& side)
-{
-  PlacedBlock placed;
-  placed.place(block, state);
-  double reach = isRound(placed) ? roundReach(roundAxes(placed), side) : 0.0;
-  for (const Vec3& vertex : placed.vertices())
-  {
-    reach = std::max(reach, side.dot(state.position - vertex));
-  }
-  return reach;
-}
 
 /// A stem from end to end, against which a rock comes. A standing one has no lower end to be hit.
 struct StemAxis
@@ -304,7 +310,7 @@ void StructuresOnWay::passTree(
   const bool stands = !driven && energyTowards(hit.offset, energy) <= stem.capacity;
   StructureEvent event =
     eventAt(stands ? StructureOutcome::TreePassed : StructureOutcome::TreeBroken, stem.feature,
-      body.state, energy, height);
+      body.block, body.state, energy, height);
   // No more than its push can take, of which springs hold a part already.
   const double across = rigidKineticEnergy(body.block, acrossOf(hit, body.state));
   const double taken = std::min(stemShare(hit.offset) * stem.capacity, held + across);
@@ -518,7 +524,7 @@ void StructuresOnWay::passBarriers(const Way& way, double taken, double gravity,
       : meets == BarrierMeets::Nothing    ? StructureOutcome::BarrierPassed
       : barrier.records                   ? StructureOutcome::BarrierRecorded
                                           : StructureOutcome::BarrierStruck;
-    StructureEvent event = eventAt(outcome, barrier.feature, at, energy, height);
+    StructureEvent event = eventAt(outcome, barrier.feature, body.block, at, energy, height);
     if (!barrier.records && !gone)
     {
       noteLoad(event, this->loadOf(number), state);

@@ -44,8 +44,8 @@ struct BarrierHit
 void slowDown(BlockState& state, double energy, double taken);
 /// Outcome for a structure where the rock is `at`, with this energy (J) and its centre this high
 /// over the slope (m); nothing is taken of it.
-StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
-  double energy, double height);
+StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Block& block,
+  const BlockState& at, double energy, double height);
 /// Notes what a barrier is like before the rock comes.
 void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierState& barrier);
 

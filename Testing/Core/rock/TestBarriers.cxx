@@ -62,6 +62,7 @@ TEST(Barriers, CatchWhatIsBelowHeightAndCapacity)
       {
         ASSERT_EQ(t.structures.size(), 1u);
         EXPECT_EQ(t.structures[0].outcome, StructureOutcome::BarrierStruck);
+        EXPECT_NEAR(t.structures[0].topHeight, top, 1e-9);
         EXPECT_NEAR(t.summary.stop.x(), 62.0, 1e-9);
         continue;
       }
@@ -70,6 +71,7 @@ TEST(Barriers, CatchWhatIsBelowHeightAndCapacity)
       EXPECT_EQ(event.feature, 3);
       EXPECT_NEAR(event.time, 0.5, 1e-9);
       EXPECT_NEAR(event.heightOverGround, crossing, 1e-9);
+      EXPECT_NEAR(event.topHeight, top, 1e-9);
       EXPECT_NEAR(event.kineticEnergy, energy, 1e-9 * energy);
       EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-9 * energy);
       if (energy < capacity)
