@@ -9,6 +9,7 @@
 #include "shared/columns.h"
 #include "shared/inputContent.h"
 #include "shared/terrainFieldData.h"
+#include "statistics/design.h"
 #include "terrain/HeightGrid.h"
 
 #include "vtkCellArray.h"
@@ -361,7 +362,13 @@ void writeLines(std::span<const LineSummary> summaries, std::span<const Collecto
   columns.add("HighestQuantile", [](R r) { return r.of.highestQuantile; });
   columns.add("Offset", [](R r) { return r.line.offset; });
   columns.add("Share", [](R r) { return r.of.share; });
-  columns.add("ShareError", [](R r) { return r.of.shareError; });
+  // Rocks that were lost before may pass a line that none was seen to pass.
+  columns.add("ShareError",
+    [](R r)
+    {
+      return r.of.rocks == 0 && r.lost.lost() > 0 ? shareAtMost(r.lost.lost(), r.lost.rocks)
+                                                  : r.of.shareError;
+    });
   columns.add("BarrierHeight", [](R r) { return r.line.barrierHeight; });
   columns.add("BarrierCapacity", [](R r) { return r.line.barrierCapacity / 1000.0; });
   columns.add("CaughtShare", [](R r) { return r.of.caughtShare; });

@@ -236,6 +236,17 @@ TEST_F(TestLostRocks, SharesOfNoneAndAllHaveTheirLimit)
     EXPECT_EQ(table->GetValueByName(0, "Share").ToDouble(), x < 500020 ? 1.0 : 0.0);
     EXPECT_NEAR(table->GetValueByName(0, "ShareError").ToDouble(), limit, 1e-12);
   }
+  // Of six rocks that never pass the line one was lost before it and may pass it: 1 of 6 is as likely as 5 %
+  // where (1 - p)^6 + 6 p (1 - p)^5 is.
+  paths.Data->GetCellData()->GetArray("Fate")->SetTuple1(5, 1.0);
+  vtkNew<vtkTrajectoryCollector> beyond;
+  beyond->SetInputDataObject(0, paths.Data);
+  beyond->AddPoint(500030, 5099990, 0);
+  beyond->AddPoint(500030, 5100020, 0);
+  beyond->Update();
+  const double p =
+    value(vtkTable::SafeDownCast(beyond->GetOutputDataObject(1))->GetRowData(), "ShareError");
+  EXPECT_NEAR(std::pow(1.0 - p, 6.0) + 6.0 * p * std::pow(1.0 - p, 5.0), 0.05, 1e-9);
   HandMadeTrajectories apart;
   for (int rock = 0; rock < 7; ++rock)
   {
