@@ -163,7 +163,7 @@ class Pipeline:
         before = simulation.EndTime, simulation.PrintProgress
         # Two: what makes iterations alike is told here.
         simulation.FirstIteration, simulation.Iterations = 0, min(2, self.study["iterations"])
-        simulation.EndTime = min(simulation.EndTime, simulation.TimeStep)
+        simulation.EndTime = min(simulation.EndTime, simulation.TimeStep, LOOK)
         simulation.PrintProgress = 0
         UpdatePipeline(0.0, simulation)
         output(simulation, 3)
@@ -175,8 +175,8 @@ class Pipeline:
             UpdatePipeline(proxy=self.crossings)
             output(self.crossings)
         if any(self.study["terrain"].get(kind + "File") for kind in ("Embankment", "Tree", "Barrier")):
-            kept = self.study["simulation"].get("TrajectoryOutput", "Full") in ("Thinned", "Full", 3, 4)
-            self.standing = standing.Standing(self.slope, simulation, kept)
+            paths = simulation.TrajectoryOutput in ("Thinned", "Full")
+            self.standing = standing.Standing(self.slope, simulation, paths, bool(simulation.KeepImpacts))
         simulation.EndTime, simulation.PrintProgress = before
         for proxy in (simulation, self.crossings):
             if proxy:

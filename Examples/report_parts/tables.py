@@ -10,6 +10,7 @@ import charts
 from enough import most_of_none
 from identity import differences
 from schema import Bad
+from standing import UNKNOWN
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODELS = ("whole velocity", "normal and tangential", "speed-dependent")
@@ -222,19 +223,21 @@ def standing(study):
     for k in range(len(study.standing)):
         row = {name: values[k] for name, values in study.standing.columns.items()}
         net, stems = row["Kind"] == "net", row["Kind"] == "stems"
-        whole = lambda name: "–" if row[name] < 0 else number(row[name], 7)
-        energy = number(row["EnergyMaximum"]) + (f", class {whole('RequiredClass')}" if net and row["Rocks"] else "")
+        whole = lambda name: "not known" if row[name] == UNKNOWN else "–" if row[name] < 0 else number(row[name], 7)
+        real = lambda name, of: "not known" if row[of] == UNKNOWN and math.isnan(row[name]) else number(row[name])
+        energy = real("EnergyMaximum", "Over") + (f", class {whole('RequiredClass')}" if net and row["Rocks"] else "")
         useful = number(row["UsefulHeightMinimum"]) if net else "–"
         enough = "–" if row["HeldAll"] < 0 else "yes" if row["HeldAll"] == 1 else "no"
         made.append([row["Name"] if stems else f"{row['Kind']} {row['StructureId']:.0f} {row['Name']}".strip(),
                      whole("Rocks"), whole("Hits"), whole("Held"), "–" if row["Kind"] == "embankment" else whole("Broke"),
-                     whole("Over"), energy, enough, number(row["TopHeightMaximum"]), number(row["BrakingDistanceMaximum"] or math.nan),
-                     useful, *([number(row["AnnualFrequency"])] if known_often(study) else [])])
+                     whole("Struck"), whole("Over"), energy, enough, real("TopHeightMaximum", "Over"),
+                     number(row["BrakingDistanceMaximum"] or math.nan), useful,
+                     *([real("AnnualFrequency", "Hits")] if known_often(study) else [])])
     return made
 
 
 def known_often(study):
-    return len(study.standing) > 0 and bool(np.isfinite(study.standing["AnnualFrequency"]).all())
+    return len(study.standing) > 0 and bool(np.isfinite(study.standing["AnnualFrequency"]).any())
 
 
 def span(capacity):

@@ -9,7 +9,7 @@ from paraview import servermanager
 import schema
 
 FILES = ("FileName", "File", "Layer", "Table")  # a property whose name ends so is a file
-FORMAT = 4  # of the files of a study: another one is another study
+FORMAT = 5  # of the files of a study: another one is another study
 # Companions that GDAL reads but does not list, or lists only for some formats: with their ending
 # instead of the file's own, or behind it.
 COMPANIONS = (".dbf", ".shx", ".prj", ".cpg", ".csvt", ".tfw", ".wld", ".ovr", ".xsd"), \

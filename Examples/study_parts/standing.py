@@ -8,11 +8,14 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import schema
 from gis import write_table
-from together import from_first_rank, make, output
+from together import from_first_rank, make, output, say
 from wholefile import write_npz
 
 TABLE = "structures.csv"
-HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, STRUCK, HIT, CAME = range(8)  # to STRUCK as Outcome of port 4
+# To GONE as Outcome of port 4: OVER a net, or where another rock had broken it. HIT and CAME are of embankments.
+HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, STRUCK, OVER, GONE, HIT, CAME = range(10)
+HITS = (HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, STRUCK, HIT)
+NONE, UNKNOWN = -1, -2  # in the place of a number of rocks: there is none, it is not known
 RESTED, CAUGHT, BROKEN = 0, 3, 5  # as FateCode of port 3
 MEL = (100.0, 250.0, 500.0, 1000.0, 1500.0, 2000.0, 3000.0, 4500.0)  # kJ, of the classes 0 to 7 (EAD 340059-00-0106)
 EVENT = ("Structure", "Event", "Iteration", "RockId", "Piece", "Energy", "Height", "Braking", "Useful")
@@ -44,7 +47,9 @@ def of_slope(data):
                 continue
             capacity = -1.0 if columns[1] is None else row[columns[1]] / 1000.0
             made.append({"kind": kind, "id": int(row[0]), "name": names.GetValue(k) if names else "", "parts": [part],
-                         "height": float(row[columns[0]]), "capacity": float(capacity) if capacity >= 0.0 else None})
+                         "height": float(row[columns[0]]), "capacity": float(capacity) if capacity >= 0.0 else None,
+                         "limit": float(row[2]) if capacity >= 0.0 else math.inf,  # J, as it was given
+                         "wears": kind == "net" and bool(row[7] >= 0.0)})
     stems = numbers(data, "TerrainTrees")
     if len(stems):
         made.append({"kind": "stems", "id": 0, "name": f"{len(stems)} stems", "parts": [], "height": 0.0, "capacity": None})
@@ -52,19 +57,26 @@ def of_slope(data):
 
 
 class Standing:
-    """Looks at each chunk's rocks where they meet what stands on the slope. All ranks take part."""
+    """Looks at each chunk's rocks where they meet what stands on the slope. All ranks take part. Of embankments it takes the
+    `paths` of rocks, which come over them, and their `impacts`; without these it is not known what came to them."""
 
-    def __init__(self, slope, simulation, kept):
+    def __init__(self, slope, simulation, paths, impacts):
         self.simulation = simulation
         data = output(slope).GetFieldData()
         self.things = from_first_rank(lambda: of_slope(data))
         self.numbers = {(one["kind"], one["id"]): k for k, one in enumerate(self.things)}
-        lines = [one for one in self.things if one["parts"]]
+        dams = [one for one in self.things if one["kind"] == "embankment"]
+        for one in dams:
+            one.update(paths=paths, impacts=impacts)
+        if dams and not (paths and impacts):
+            say("What comes to embankments is not known " + " and ".join(
+                text for text, there in (("without paths (TrajectoryOutput)", paths), ("without impacts (KeepImpacts 0)", impacts))
+                if not there) + f": {TABLE} has {UNKNOWN} and nan for it")
         self.collector = make(TrajectoryCollector, "structures", {
             "Input": OutputPort(simulation, 1), "Terrain": slope, "PrintNotes": 0,
-            "Points": [0, 0, 0, 1, 1, 0]}) if lines and kept else None
+            "Points": [0, 0, 0, 1, 1, 0]}) if dams and paths else None
         self.of_cfe = {}
-        if any(one["kind"] == "embankment" for one in self.things):
+        if dams:
             shown = slope.GetClientSideObject().GetOutputDataObject(1).GetCellData()
             kind, cfe, feature = (numbers(shown, name) for name in ("StructureKind", "CFEId", "StructureId"))
             self.of_cfe = {int(c): self.numbers["embankment", int(f)] for c, f in zip(cfe[kind == 0], feature[kind == 0])}
@@ -75,7 +87,7 @@ class Standing:
         rows = []
         from_first_rank(lambda: rows.extend(self.met(*ports)))
         for k, one in enumerate(self.things if self.collector else ()):
-            for part in one["parts"]:
+            for part in one["parts"] if one["kind"] == "embankment" else ():
                 self.collector.Points = [value for x, y in part for value in (x, y, 0.0)]
                 UpdatePipeline(proxy=self.collector)
                 passed = output(self.collector).GetPointData()
@@ -87,11 +99,12 @@ class Standing:
     def met(self, impacts, summaries, structures):
         """Rows of nets and stems that were hit, and of impacts on embankments."""
         met = structures.GetPointData()
-        names = ("KineticEnergy", "HeightOverGround", "BrakingDistance", "UsefulHeight")
-        for feature, outcome, *row in zip(numbers(met, "StructureId"), numbers(met, "Outcome"), *bodies(met),
-                                          *(numbers(met, name) for name in names)):
-            thing = ("net", int(feature)) if outcome in (HELD, BROKE, RECORDED, STRUCK) else ("stems", 0)
-            yield self.numbers[thing], int(outcome), *row
+        names = ("KineticEnergy", "TopHeight", "BrakingDistance", "UsefulHeight")
+        for feature, outcome, before, *row in zip(*(numbers(met, name) for name in ("StructureId", "Outcome", "HeldBefore")),
+                                                  *bodies(met), *(numbers(met, name) for name in names)):
+            thing = ("stems", 0) if outcome in (STEM_BROKE, STEM_PASSED) else ("net", int(feature))
+            number = self.numbers[thing]
+            yield number, event_of(self.things[number], int(outcome), row[3], before), *row
         if not self.of_cfe:
             return
         table = summaries.GetRowData()
@@ -103,6 +116,13 @@ class Standing:
             key = (iteration[k], rock[k], piece[k])
             energy = 0.5 * mass[key] * float(speed[k] @ speed[k])
             yield self.of_cfe[int(cfes[k])], HIT, *key, energy, math.nan, 0.0, math.nan
+
+
+def event_of(thing, outcome, energy, before):
+    """Outcome of a rock of this energy (J) at a structure: a net that it strikes with a part breaks, for others, above what
+    is left of its capacity, of which one that wears has lost what it held `before` (J)."""
+    breaks = outcome == STRUCK and energy > thing["limit"] - (before if thing["wears"] else 0.0)
+    return BROKE if breaks else outcome
 
 
 def frequency_of(study, stems, wanted):
@@ -172,39 +192,45 @@ def keys_of(events, *names):
 def summary(thing, events, often, ends):
     """A row of structures.csv."""
     keys = keys_of(events, "Iteration", "RockId", "Piece")
-    hits = (HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT)
 
     def met(*kinds):
         return {tuple(key) for key in keys[np.isin(events["Event"], kinds)].tolist()}
 
-    def rocks(*kinds):
-        return {key[:2] for key in met(*kinds)}
+    def rocks_of(bodies):
+        return {key[:2] for key in bodies}
 
-    hit, broke, stem = rocks(*hits), rocks(BROKE), thing["kind"] == "stems"
-    came = rocks(CAME) | hit
+    def rocks(*kinds):
+        return rocks_of(met(*kinds))
+
+    hit, broke, stem, net = rocks(*HITS), rocks(BROKE), thing["kind"] == "stems", thing["kind"] == "net"
+    came = rocks(OVER, GONE, CAME) | hit
     # An embankment holds what hits it, does not come over its axis and ends before it: all else came over or beside it.
     # A net may miss a piece of a rock and hold another. Stems that hold are slope, which nothing counts.
+    struck = set()
     if thing["kind"] == "embankment":
         held = {key for key in hit - rocks(CAME) if all(
             fate in (RESTED, CAUGHT) and lies_before(thing["parts"], ends[key][0], stop) for fate, stop in ends[key][1])}
         over = came - held
     else:
-        over = {key[:2] for key in met(CAME) - met(*hits)}
-        held = rocks(HELD) - broke - over
+        over = rocks_of(met(OVER, GONE) - met(*HITS))
+        struck = rocks_of(met(STRUCK) - met(HELD, BROKE))
+        held = rocks(HELD) - broke - over - struck
     energy = largest(events["Energy"]) / 1000.0
-    net = thing["kind"] == "net"
+    paths, impacts = thing.get("paths", True), thing.get("impacts", True)
+    of_all = lambda value, unknown=UNKNOWN: value if paths and impacts else unknown
     return {
         "Kind": thing["kind"], "StructureId": thing["id"], "Name": thing["name"],
         "StructureHeight": math.nan if stem or not thing["height"] else thing["height"],
         "BarrierCapacity": math.nan if thing["capacity"] is None else thing["capacity"],
-        "Rocks": len(came), "Hits": len(hit), "Held": -1 if stem else len(held),
-        "Broke": int((events["Event"] == STEM_BROKE).sum()) if stem else len(broke), "Over": -1 if stem else len(over),
-        "EnergyMaximum": energy, "RequiredClass": int(np.searchsorted(MEL, energy)) if net and came else -1,
-        "HeldAll": int(came == held) if net and came else -1,
-        "TopHeightMaximum": math.nan if stem else largest(events["Height"]),
+        "Rocks": of_all(len(came)), "Hits": len(hit) if impacts else UNKNOWN, "Held": NONE if stem else of_all(len(held)),
+        "Broke": int((events["Event"] == STEM_BROKE).sum()) if stem else len(broke), "Struck": len(struck) if net else NONE,
+        "Over": NONE if stem else of_all(len(over)),
+        "EnergyMaximum": of_all(energy, math.nan), "RequiredClass": int(np.searchsorted(MEL, energy)) if net and came else NONE,
+        "HeldAll": int(came == held) if net and came else NONE,
+        "TopHeightMaximum": math.nan if stem or not paths else largest(events["Height"]),
         "BrakingDistanceMaximum": largest(events["Braking"][events["Event"] == HELD]),
-        "UsefulHeightMinimum": -largest(-events["Useful"][np.isin(events["Event"], (HELD, BROKE))]),
-        "AnnualFrequency": math.nan if often is None else sum((often[key] for key in sorted(hit)), 0.0)}
+        "UsefulHeightMinimum": -largest(-events["Useful"][np.isin(events["Event"], (HELD, BROKE, STRUCK, OVER))]),
+        "AnnualFrequency": math.nan if often is None or not impacts else sum((often[key] for key in sorted(hit)), 0.0)}
 
 
 def combine(study, folder, stems, things):

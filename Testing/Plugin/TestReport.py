@@ -91,7 +91,7 @@ assert f"rocks that pass {line['Rocks']} " in text
 # Structures by their names, with what came to them.
 net = next(row for row in rows_of("whole/structures.csv") if row["Kind"] == "net")
 assert int(net["Hits"]) > 0 and "net or fence 1 Net <1> 4 m high" in text, net
-assert "net 1 Net <1> {Rocks} {Hits} {Held} {Broke} {Over} {}, class {RequiredClass}".format(
+assert "net 1 Net <1> {Rocks} {Hits} {Held} {Broke} {Struck} {Over} {}, class {RequiredClass}".format(
     tables.number(float(net["EnergyMaximum"])), **net) in text, net
 assert "hits, 1/a" not in text and "2 stems" in text
 # Parallels are in the chart alone.
@@ -156,6 +156,15 @@ for gone in (0, 5):
     assert told in " ".join(tables.notes(own)), tables.notes(own)
 assert high > 60.0
 own.rocks.columns["Endless"] = ends
+# What is not known is told so, never a number or a yes.
+row = {"Kind": "embankment", "StructureId": 1.0, "Name": "Dam", "Broke": 0.0, "Struck": -1.0, "RequiredClass": -1.0, "HeldAll": -1.0,
+       "BrakingDistanceMaximum": np.nan, "UsefulHeightMinimum": np.nan, "AnnualFrequency": np.nan, "Hits": 4.0,
+       **dict.fromkeys(("Rocks", "Held", "Over"), -2.0), **dict.fromkeys(("EnergyMaximum", "TopHeightMaximum"), np.nan)}
+there, own.standing = own.standing, own.bodies.rows(slice(0, 0))
+own.standing.columns = {name: np.array([value]) for name, value in row.items()}
+assert tables.standing(own) == [["embankment 1 Dam", "not known", "4", "not known", "–", "–", "not known", "not known", "–", "not known",
+                                 "–", "–"]], tables.standing(own)
+own.standing = there
 
 # Choices are in the values in force by their names, and how long it took is told.
 with open("whole/manifest.json") as file:
