@@ -49,7 +49,12 @@ void PassedBarriers::add(const TrajectorySummary& summary, std::span<const Struc
 {
   const bool whole = summary.piece == 0;
   const auto any = [events](StructureOutcome outcome)
-  { return std::ranges::find(events, outcome, &StructureEvent::outcome) != events.end(); };
+  {
+    return std::any_of(events.begin(), events.end(),
+      [outcome](const StructureEvent& event) {
+        return event.outcome == outcome && event.usefulHeight > 0.0;
+      }); // one that records has none
+  };
   this->rocks += whole ? 1 : 0;
   this->passed.add(whole, any(StructureOutcome::BarrierPassed));
   this->struck.add(whole, any(StructureOutcome::BarrierStruck));

@@ -309,6 +309,7 @@ double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool to
   slowDown(body.state, left, barrier.absorbs ? std::min(capacity, left) : 0.0);
   const double gone = left - rigidKineticEnergy(body.block, body.state);
   body.energy.structures += gone;
+  fall.freeUntil = 0.0;
   breakBarrier(fall, at, energy, gone);
   return gone;
 }

@@ -164,7 +164,11 @@ void SlopeImpact::noteScar(double depth, double length)
 
 void SlopeImpact::noteSink(const RockBody& body, const Contact& under)
 {
-  hit_.underWay = hit_.underWay && hit_.largestForce > 0.0; // the rock has not come to Λ
+  // Before the rock comes to Λ, soil takes of its speed and the next corner of a landing sinks: the hit
+  // began with the first one. A graze before a counter slope is another hit.
+  const auto into = [&](const Vec3& velocity) { return -under.normal.dot(velocity); };
+  const bool touched = hit_.underWay && hit_.largestForce > 0.0;
+  hit_.underWay = touched || (hit_.underWay && into(hit_.velocity) >= into(body.state.velocity));
   this->beginHit(body.state);
   if (largestForce_ == 0.0)
   {
@@ -180,7 +184,7 @@ void SlopeImpact::takeOff(RockBody& body, Recorder& recorder)
   {
     return;
   }
-  if (this->breaks(body))
+  if (this->isWorthAnEvent(body) && this->breaks(body))
   {
     this->finish(body, recorder);
     return;

@@ -301,3 +301,28 @@ TEST(Fragmentation, EachHitInAScarIsJudgedByItself)
   EXPECT_GE(breakingOn(slope, rock, 100e3, 10).first, 8);
   EXPECT_EQ(breakingOn(slope, rock, 250e3, 10).first, 0);
 }
+
+/// A rock that turns lands with one corner after the other: soil brakes it between them, but the hit is
+/// the one that began at the surface.
+TEST(Fragmentation, ARockThatTurnsBreaksByTheSpeedWithWhichItLands)
+{
+  constexpr double speed = 12.0; // downwards, m/s
+  const double r = makeShape(Shape::Cube, 0.01).radius();
+  Rock rock = icosahedronAt(1.001 * r, Vec3(speed, 0.0, -speed), 60.0);
+  rock.shape = makeShape(Shape::Cube, 0.01);
+  rock.angularVelocity = Vec3(0.0, 1.4 * speed / r, 0.0);
+  const double energy = 0.5 * rock.density * speed * speed;
+  for (const char* preset : { "Meadow", "Talus", "Soil" })
+  {
+    const Terrain slope = makeSlope(
+      201, 1.0, [](double, double) { return 0.0; }, evenGround(preset));
+    Fragmentation law = lawOf(energy / 1.02, 0.001);
+    int broken = 0;
+    for (int k = 0; k < 24; ++k)
+    {
+      rock.orientation = Quat(1.0, 0.2 * k, 0.3, 0.17 * k).normalized();
+      broken += runOf(slope, { rock }, law)[0].summary.fate == Fate::Broken;
+    }
+    EXPECT_EQ(broken, 24) << preset;
+  }
+}
