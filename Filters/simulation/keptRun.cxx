@@ -320,7 +320,7 @@ void KeptRun::takeResults(RunSink& sink)
   const LostRocks lost = lostOf(summary);
   std::vector<std::string> further = brokenNotes(sink.broken(), parameters);
   std::ranges::move(passedNotes(sink.passedBarriers()), std::back_inserter(further));
-  std::ranges::move(unclosedNotes(sink.unclosed()), std::back_inserter(further));
+  std::ranges::move(doubtsOfRun(trajectories->GetFieldData()), std::back_inserter(further));
   const bool look = parameters.endTime < kLeastRun; // at the inputs: what it loses is not told
   tellLost(lost, summary->GetFieldData(), further, printNotes && !look);
   writeLost(lost, trajectories->GetFieldData());

@@ -126,17 +126,29 @@ std::vector<std::string> brokenNotes(
     " m³) and is not followed" };
 }
 
+namespace
+{
+
+void tellCounted(const CountedRocks& counted, std::int64_t of, const std::string& what,
+  std::vector<std::string>& notes)
+{
+  if (counted.rocks > 0)
+  {
+    notes.push_back(std::to_string(counted.rocks) + " of " + std::to_string(of) + " rocks " + what);
+  }
+}
+
+} // namespace
+
 std::vector<std::string> unclosedNotes(const UnclosedBooks& books)
 {
   std::vector<std::string> notes;
   const auto tell = [&](const CountedRocks& counted, const char* how, const char* what)
   {
-    if (counted.rocks > 0)
-    {
-      notes.push_back(std::to_string(counted.rocks) + " of " + std::to_string(books.rocks) +
-        " rocks " + how + " nowhere than " + numberText(100.0 * UnclosedBooks::kTold) +
-        " % of what they had (" + what + "; give a smaller TimeStep");
-    }
+    tellCounted(counted, books.rocks,
+      std::string(how) + " nowhere than " + numberText(100.0 * UnclosedBooks::kTold) +
+        " % of what they had (" + what + "; give a smaller TimeStep",
+      notes);
   };
   tell(books.gained, "got more energy from",
     "EnergyNumerical, or losses on the slope, below 0): they are too fast");
@@ -147,19 +159,12 @@ std::vector<std::string> unclosedNotes(const UnclosedBooks& books)
 std::vector<std::string> passedNotes(const PassedBarriers& barriers)
 {
   std::vector<std::string> notes;
-  const auto tell = [&](const CountedRocks& counted, const char* how)
-  {
-    if (counted.rocks > 0)
-    {
-      notes.push_back(
-        std::to_string(counted.rocks) + " of " + std::to_string(barriers.rocks) + " rocks " + how);
-    }
-  };
-  tell(
-    barriers.passed, "went over a barrier (Outcome 6 of the structures): it is too low for them");
-  tell(barriers.struck,
+  tellCounted(barriers.passed, barriers.rocks,
+    "went over a barrier (Outcome 6 of the structures): it is too low for them", notes);
+  tellCounted(barriers.struck, barriers.rocks,
     "struck a barrier with a part only, above it or beyond its end, and went on with all their "
-    "energy (Outcome 5 of the structures): it is too low or too short for them");
+    "energy (Outcome 5 of the structures): it is too low or too short for them",
+    notes);
   return notes;
 }
 

@@ -35,7 +35,7 @@ bool applyBroken(Fall& fall, const StructuresOnWay::Broken& broken);
 bool passBarriers(Fall& fall, const Way& way, double taken);
 bool holdsAtBarrier(const Fall& fall); ///< The one that it hits can hold it.
 void meetBarrier(Fall& fall);          ///< The one that it hits, where the rock is.
-/// Those on the way of a step of contact that the rock has gone, or in soil. Whether the step goes on
+/// Barriers on the way of a step of contact that the rock has gone, or in soil. Whether the step goes on
 /// to its end: behind a barrier that breaks there may be others.
 bool passBarriersInStep(Fall& fall, bool touching);
 

@@ -1,8 +1,8 @@
 // Barriers that a rock meets with a part of itself, behind another one, or where it is released.
 
+#include "../evenGround.h"
 #include "../piles.h"
 #include "rigidFor.h"
-#include "terrain/presets.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>
@@ -207,7 +207,7 @@ TEST(StruckBarriers, ARockReleasedOnALineIsNotBehindIt)
   }
 }
 
-/// On the edge of a wall a net stands on its crest, from whichever side a rock comes.
+/// A net on the edge of a wall stands on its crest, from whichever side a rock comes.
 TEST(StruckBarriers, ANetOnTheEdgeOfAWallStandsOnItsCrest)
 {
   for (const double at : { 59.0, 61.0 })
@@ -235,7 +235,7 @@ TEST(StruckBarriers, ANetOnTheEdgeOfAWallStandsOnItsCrest)
   }
 }
 
-/// In a scar soil brakes a rock before the line that it would pass in free flight: it is met once.
+/// Soil in a scar brakes a rock before the line that it would pass in free flight: the net is met once.
 TEST(StruckBarriers, AreMetOnceInAScar)
 {
   // Around lines to which the rock comes in a scar.
@@ -243,8 +243,7 @@ TEST(StruckBarriers, AreMetOnceInAScar)
     { "Meadow", 277 } };
   for (const auto& [preset, first] : cases)
   {
-    SurfaceMaterial soft = groundPreset(preset).material();
-    soft.restitutionDeviation = soft.yielding.deviation = 0.0;
+    const SurfaceMaterial soft = evenGround(preset);
     for (int k = first; k < first + 15; ++k)
     {
       Structures s;

@@ -1,9 +1,9 @@
 // Pieces of rocks that broke, at nets and stems: each meets what those before it have left.
 
+#include "evenGround.h"
 #include "fragments.h"
 #include "law/settings.h"
 #include "run/brokenFall.h"
-#include "terrain/presets.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>
@@ -223,15 +223,8 @@ TEST(Fragmentation, ALookAtTheBeginningDoesNotTakeAllOfTheTime)
 namespace
 {
 
-SurfaceMaterial evenGround(const char* preset)
-{
-  SurfaceMaterial ground = groundPreset(preset).material();
-  ground.restitutionDeviation = ground.yielding.deviation = 0.0;
-  return ground;
-}
-
-/// Of a rock that comes to `slope`, over its attitudes: how many broke, and the most time from the
-/// first touch to then, s.
+/// Number of attitudes in which a rock that comes to `slope` breaks, and the most time from the first
+/// touch to then, s.
 std::pair<int, double> breakingOn(const Terrain& slope, Rock rock, double energy, int attitudes)
 {
   int broken = 0;
