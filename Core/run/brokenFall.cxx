@@ -178,7 +178,7 @@ private:
     under.point = Vec3(at.x(), at.y(), surface_.elevation(at.x(), at.y()));
     if (scar.open() && std::isfinite(under.point.z()))
     {
-      piece.soil.sink({ &under, scar.depth(), 0.0 }, piece.body, piece.ground);
+      piece.soil.sink({ &under, scar.depth(), 0.0 }, piece.structures, piece.body, piece.ground);
     }
   }
 

@@ -397,6 +397,13 @@ int Obstacles::materialOf(std::int64_t cfe) const
     : structures_.embankments[std::size_t(owners_[std::size_t(cfe - firstCfe_)])].material;
 }
 
+bool Obstacles::isFirm(std::int64_t cfe) const
+{
+  const int material = this->treeOf(cfe) < 0 ? this->materialOf(cfe) : 0;
+  return this->treeOf(cfe) >= 0 ||
+    (material > 0 && !structures_.materials[std::size_t(material) - 1].yielding.scars());
+}
+
 double Obstacles::embankmentTop(double x, double y) const
 {
   double top = -std::numeric_limits<double>::infinity();
@@ -461,6 +468,7 @@ struct Numbering
 {
   int nodes, triangles; ///< First of each in the patch.
   std::int64_t nodeKey, triangleKey, cfe;
+  const Obstacles* of;
 };
 
 /// `nodeAt`, `triangleAt`: place among those appended, −1 if it is not among them.
@@ -492,6 +500,7 @@ void appendMesh(const ObstacleMesh& mesh, std::span<const int> nodes,
     t.bends = source.bends;
     t.cfe = from.cfe + i;
     t.key = from.triangleKey + i;
+    t.firm = from.of->isFirm(t.cfe);
     t.ridges.fill(-1);
     for (int k = 0; k < 3; ++k)
     {
@@ -500,6 +509,7 @@ void appendMesh(const ObstacleMesh& mesh, std::span<const int> nodes,
       t.neighbours[k] = at < 0 ? -1 : from.triangles + at;
       SurfacePatch::Node& q = patch.nodes[std::size_t(t.nodes[k])];
       q.cfe = std::max(q.cfe, t.cfe);
+      q.firm = t.firm;
     }
     t.offset = t.normal.dot(patch.nodes[std::size_t(t.nodes[0])].position);
   }
@@ -544,7 +554,7 @@ void Obstacles::append(
     return found != list.end() && *found == k ? int(found - list.begin()) : -1;
   };
   Numbering from{ int(patch.nodes.size()), int(patch.triangles.size()), firstKey, firstKey,
-    firstCfe_ };
+    firstCfe_, this };
   appendMesh(
     mesh_, nodes, triangles, from, [&](int n) { return mesh_.nodes[std::size_t(n)].position; },
     [&](int i) { return mesh_.triangles[std::size_t(i)].normal; },
@@ -566,7 +576,7 @@ void Obstacles::append(
     from = { int(patch.nodes.size()), int(patch.triangles.size()),
       firstKey + std::int64_t(mesh_.nodes.size()) + std::int64_t(tree) * 2 * treeSides,
       firstKey + meshTriangles + std::int64_t(tree) * treeTriangles,
-      firstCfe_ + meshTriangles + std::int64_t(tree) * treeTriangles };
+      firstCfe_ + meshTriangles + std::int64_t(tree) * treeTriangles, this };
     const bool lies = this->lyingOf(tree) != nullptr;
     const ObstacleMesh& shape = this->shapeOf(tree);
     appendMesh(

@@ -106,6 +106,9 @@ public:
   std::int64_t firstCfe() const { return firstCfe_; }
   int treeOf(std::int64_t cfe) const; ///< −1 if it is none.
   int materialOf(std::int64_t cfe) const;
+  /// Whether what an obstacle's CFE is of is hard: trees, and embankments of a material of their own
+  /// that has no scars.
+  bool isFirm(std::int64_t cfe) const;
 
   /// Upper bound of the obstacles over a box, m; −∞ if there is none.
   double maxHeight(double xMin, double xMax, double yMin, double yMax) const

@@ -207,7 +207,7 @@ void layNodes(const Surface& surface, SurfacePatch& patch)
         surface.apronHeight(row, column) };
       node->key = gridKey(row, column);
       node->cfe = 0;
-      node->peak = false;
+      node->peak = node->firm = false;
     }
   }
 }
@@ -272,6 +272,7 @@ void layTriangles(const Surface& surface, SurfacePatch& patch)
         t[k].cfe = std::isnan(t[k].offset) ? 0 : surface.cfeOf(row, column, k == 1);
         t[k].key = key + k;
         t[k].rising = rising;
+        t[k].firm = false;
         t[k].bends.fill(0);
         t[k].ridges.fill(-1);
         for (int n : t[k].nodes)

@@ -150,6 +150,7 @@ struct SurfacePatch
     std::array<int, 3> neighbours;
     std::array<signed char, 3> bends; ///< +1 convex (ridge), 0 flat, −1 concave (valley).
     bool rising = false;              ///< Cut of its cell (cellDiagonal.h).
+    bool firm = false;                ///< Stays where it is when Λ of a scar sinks.
     Vec3 normal;
     double offset;    ///< normal · x on the plane, m.
     std::int64_t cfe; ///< 0: touches nodata. On the apron that of the nearest cell.
@@ -170,8 +171,9 @@ struct SurfacePatch
   {
     Vec3 position;
     std::int64_t key;
-    std::int64_t cfe; ///< One of the CFEs here, 0 if there is none.
-    bool peak;        ///< On a ridge, all neighbours known: a rock's face can touch it.
+    std::int64_t cfe;  ///< One of the CFEs here, 0 if there is none.
+    bool peak;         ///< On a ridge, all neighbours known: a rock's face can touch it.
+    bool firm = false; ///< As of its triangles.
     std::array<int, 8> neighbours; ///< Of a peak; one of them again where there are fewer.
   };
 

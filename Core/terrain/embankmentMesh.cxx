@@ -44,9 +44,15 @@ public:
     : it_(embankment)
     , terrain_(terrain)
   {
-    margin_ = kFootDepth + terrain.roughnessDepth();
     this->placeStations();
     this->chooseSides();
+    const double foot = kFootDepth + terrain.roughnessDepth();
+    for (int side = 0; side < 2; ++side)
+    {
+      // Beside a scar a wall is met down to the bottom of it; gentler sides would spread too far.
+      const bool wall = slope_[side] < kSteepestScar;
+      margin_[side] = foot + (wall && terrain.yields() ? kScarBesideWall : 0.0);
+    }
     for (std::size_t i = 0; i + 1 < stations_.size(); ++i)
     {
       along_.push_back((stations_[i + 1].place - stations_[i].place).normalized());
@@ -404,9 +410,9 @@ private:
       {
         const Vec3 p = place(down);
         const double ground = this->groundAt(p.head<2>());
-        if (p.z() <= ground - margin_)
+        if (p.z() <= ground - margin_[side])
         {
-          deepest = std::max(deepest, down + margin_);
+          deepest = std::max(deepest, down + margin_[side]);
           break;
         }
         if (std::isnan(ground))
@@ -430,7 +436,7 @@ private:
 
   const Embankment& it_;
   const Terrain& terrain_;
-  double margin_ = 0.0;
+  std::array<double, 2> margin_{}; ///< By how much the foot of each side is under the ground, m.
   bool buried_ = true;
   double slope_[2] = { 0.0, 0.0 }; ///< Left and right.
   std::vector<Station> stations_;

@@ -116,11 +116,11 @@ Separation separate(const PlacedBlock& rock, const std::array<Vec3, 3>& q,
 } // namespace
 
 Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
-  double gravity, double horizon)
+  double gravity, double horizon, bool ofScar)
 {
   if (isRound(rock))
   {
-    return roundClearance(rock, state, patch, gravity, horizon);
+    return roundClearance(rock, state, patch, gravity, horizon, ofScar);
   }
   Clearance result;
   result.distance = std::numeric_limits<double>::infinity();
@@ -130,7 +130,7 @@ Clearance clearance(const PlacedBlock& rock, const BlockState& state, const Surf
   const Approach ball{ state.velocity, 0.0, gravity }; // the bounding sphere does not turn
   for (const SurfacePatch::Triangle& t : patch.triangles)
   {
-    if (t.cfe == 0)
+    if (t.cfe == 0 || (ofScar && t.firm))
     {
       continue;
     }

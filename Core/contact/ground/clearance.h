@@ -19,8 +19,8 @@ struct Clearance
 /// Conservative: per CFE the best of the separating axes (its normal, the world axes, the faces of
 /// the rock, the cross products of edges: complete for convex bodies). A fixed axis n is approached
 /// no faster than |ω| r − n·v plus gravity. Times beyond `horizon` (s) are not told apart, which
-/// spares most of the axes.
+/// spares most of the axes. `ofScar`: of what sinks with Λ alone, not of what is firm.
 Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
-  double gravity, double horizon);
+  double gravity, double horizon, bool ofScar = false);
 
 } // namespace rockfall

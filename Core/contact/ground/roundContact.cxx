@@ -424,7 +424,7 @@ double roundTimeToClose(const PlacedBlock& rock, const BlockState& state, const 
 }
 
 Clearance roundClearance(const PlacedBlock& rock, const BlockState& state,
-  const SurfacePatch& patch, double gravity, double horizon)
+  const SurfacePatch& patch, double gravity, double horizon, bool ofScar)
 {
   const Round round(rock, patch);
   const double rim = rimSpeed(rock, state);
@@ -433,7 +433,8 @@ Clearance roundClearance(const PlacedBlock& rock, const BlockState& state,
   result.time = horizon;
   for (int i = 0; i < int(patch.triangles.size()); ++i)
   {
-    if (patch.triangles[std::size_t(i)].cfe == 0)
+    const SurfacePatch::Triangle& t = patch.triangles[std::size_t(i)];
+    if (t.cfe == 0 || (ofScar && t.firm))
     {
       continue;
     }

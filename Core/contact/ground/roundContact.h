@@ -33,7 +33,7 @@ void turnToMiddle(const PlacedBlock& rock, const BlockState& state, const Surfac
 double roundTimeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   const CandidatePairs& candidates, double gravity, double horizon);
 Clearance roundClearance(const PlacedBlock& rock, const BlockState& state,
-  const SurfacePatch& patch, double gravity, double horizon);
+  const SurfacePatch& patch, double gravity, double horizon, bool ofScar);
 double roundPenetration(const PlacedBlock& rock, const SurfacePatch& patch);
 
 /// How far a round body with the axes A about a centre may go straight down until it touches a

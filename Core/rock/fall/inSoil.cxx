@@ -34,7 +34,7 @@ bool sinkUnder(Fall& fall, double h)
   }
   fall.impact.noteSink(body, *sink.under);
   fall.impact.noteApproach(sink.approach);
-  fall.soil.sink(sink, body, fall.ground);
+  fall.soil.sink(sink, fall.structures, body, fall.ground);
   return true;
 }
 
@@ -45,7 +45,7 @@ bool riseWithRock(Fall& fall)
   {
     return false;
   }
-  fall.body.contacts.clear();
+  std::erase_if(fall.body.contacts, [&](const Contact& c) { return !fall.structures.isFirm(c); });
   raiseScar(fall, by);
   return true;
 }

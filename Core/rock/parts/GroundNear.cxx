@@ -103,13 +103,20 @@ void GroundNear::forgetPatch()
 void GroundNear::lower(double by, double depth)
 {
   depth_ = depth;
+  bool firm = false;
   for (SurfacePatch::Node& node : patch_.nodes)
   {
-    node.position.z() -= by;
+    node.position.z() -= node.firm ? 0.0 : by;
+    firm = firm || node.firm;
   }
   for (SurfacePatch::Triangle& triangle : patch_.triangles)
   {
-    triangle.offset -= by * triangle.normal.z();
+    triangle.offset -= triangle.firm ? 0.0 : by * triangle.normal.z();
+  }
+  if (firm)
+  {
+    this->forgetCandidates();
+    return;
   }
   // For the pairs that can touch the rock has moved the other way.
   candidates_.position.z() -= by;

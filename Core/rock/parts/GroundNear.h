@@ -52,8 +52,8 @@ public:
   /// By this margin (m) around where the rock is placed, and what stands there.
   void ensurePatch(const RockBody& body, const StructuresOnWay& structures, double margin);
   void forgetPatch();
-  /// The surface lies lower by this, m, and `depth` (m) lower in all, now and where it is gathered
-  /// next.
+  /// The surface, but for what is firm on it, lies lower by this, m, and `depth` (m) lower in all, now
+  /// and where it is gathered next.
   void lower(double by, double depth);
   const CandidatePairs& candidates() const { return candidates_; } ///< By ensureCandidates.
   /// `among`: many others.

@@ -90,7 +90,8 @@ SoilUnderRock::Sink SoilUnderRock::sinkWithin(
   return deepest;
 }
 
-void SoilUnderRock::sink(const Sink& sink, RockBody& body, GroundNear& ground)
+void SoilUnderRock::sink(
+  const Sink& sink, const StructuresOnWay& structures, RockBody& body, GroundNear& ground)
 {
   const double by = sink.depth - scar_.depth();
   scar_.sink(sink.depth, surface_.restitutionClass(sink.under->cfe), *sink.under);
@@ -98,7 +99,7 @@ void SoilUnderRock::sink(const Sink& sink, RockBody& body, GroundNear& ground)
   const double held = springEnergyOf(body.contacts);
   for (Contact& c : body.contacts)
   {
-    c.distance += by * c.normal.z();
+    c.distance += structures.isFirm(c) ? 0.0 : by * c.normal.z();
   }
   body.springEnergy = springEnergyOf(body.contacts);
   body.energy.scars += held - body.springEnergy;
@@ -114,7 +115,9 @@ void SoilUnderRock::rise(double by, GroundNear& ground)
 double SoilUnderRock::riseNow(
   const RockBody& body, const StructuresOnWay& structures, const GroundNear& ground) const
 {
-  if (!scar_.open() || !scar_.turned() || anyClosed(body.contacts))
+  const auto isOnScar = [&](const Contact& c) { return c.closed() && !structures.isFirm(c); };
+  if (!scar_.open() || !scar_.turned() ||
+    std::any_of(body.contacts.begin(), body.contacts.end(), isOnScar))
   {
     return 0.0;
   }
@@ -128,7 +131,8 @@ double SoilUnderRock::riseNow(
   {
     return 0.0;
   }
-  const double away = clearance(body.placed, body.state, ground.patch(), gravity_, 0.0).distance;
+  const double away =
+    clearance(body.placed, body.state, ground.patch(), gravity_, 0.0, true).distance;
   const double by = std::min(scar_.depth(), away - close);
   return by < kHigherScar * scar_.depth() ? 0.0 : by;
 }
@@ -233,13 +237,13 @@ void SoilUnderRock::forgetSlip(double duration)
 bool SoilUnderRock::yieldInStep(RockBody& body, const StructuresOnWay& structures, double h)
 {
   bool ploughed = false;
-  const Contact* most = nullptr;
+  const Contact *most = nullptr, *onScar = nullptr;
   for (const Contact& c : body.contacts)
   {
-    if (c.normalForce > 0.0 && (!most || c.normalForce > most->normalForce))
-    {
-      most = &c;
-    }
+    const auto isMore = [&](const Contact* than)
+    { return c.normalForce > 0.0 && (!than || c.normalForce > than->normalForce); };
+    most = isMore(most) ? &c : most;
+    onScar = isMore(onScar) && !structures.isFirm(c) ? &c : onScar;
   }
   if (most)
   {
@@ -252,9 +256,9 @@ bool SoilUnderRock::yieldInStep(RockBody& body, const StructuresOnWay& structure
   }
   if (scar_.open())
   {
-    if (most)
+    if (onScar)
     {
-      scar_.touch(*most);
+      scar_.touch(*onScar);
     }
     body.placed.move(body.block, body.state);
     ploughed = this->plough(body, scar_.sweep(body.before.position, body.placed));

@@ -41,7 +41,8 @@ public:
   };
   /// Under what comes down within a step of `h` (s).
   Sink sinkWithin(const RockBody& body, const StructuresOnWay& structures, double h) const;
-  void sink(const Sink& sink, RockBody& body, GroundNear& ground);
+  void sink(
+    const Sink& sink, const StructuresOnWay& structures, RockBody& body, GroundNear& ground);
   /// By how much it may rise with the rock now, m; 0: not yet.
   double riseNow(
     const RockBody& body, const StructuresOnWay& structures, const GroundNear& ground) const;

@@ -62,6 +62,11 @@ public:
   std::span<const int> goneTrees() const { return goneTrees_; } ///< Ascending.
   bool isGone(int tree) const;
   int treeOf(const Contact& contact) const; ///< −1: the contact is on none.
+  /// Whether the contact is on what stays where it is when Λ of a scar sinks.
+  bool isFirm(const Contact& contact) const
+  {
+    return solid_ && contact.cfe >= obstacles_->firstCfe() && obstacles_->isFirm(contact.cfe);
+  }
   /// Where the rock is released there is no tree.
   void clearTrees(const PlacedBlock& rock, const BlockState& state);
   /// Whether a stem holds a rock with this motion: the laws of terrain/stemHit.h. What presses

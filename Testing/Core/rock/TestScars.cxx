@@ -3,6 +3,8 @@
 
 #include "dams.h"
 
+#include "../../overlap.h"
+#include "geometry/shapes.h"
 #include "run/stateHash.h"
 
 #include <gtest/gtest.h>
@@ -73,6 +75,54 @@ TEST(Scars, AreMadeOnEmbankmentsOfTheSlopesMaterialOnly)
   ASSERT_FALSE(t.impacts.empty());
   EXPECT_EQ(t.impacts.front().scarDepth, 0.0);
   EXPECT_EQ(t.summary.energy.scars, 0.0);
+}
+
+// It is met where it stands, also by rocks that roll over it out of a scar beside it.
+TEST(Scars, AWallOfItsOwnMaterialDoesNotSinkWithThem)
+{
+  const double height = 1.0, width = 1.0;
+  Embankment e = dam(height, width, 0.0);
+  e.material = 1;
+  Structures built = only(e);
+  built.materials = { material(0.3, 30.0) };
+  Terrain terrain = level(softGround());
+  terrain.setStructures(built);
+  const Block wall(makeBox({ 60.0, width, height + 2.0 }), 2500.0, 1e10, 0.25);
+  BlockState standing;
+  standing.position = Vec3(50.0, 50.0, 100.0 + 0.5 * height - 1.0); // with its foot
+  double deepestScar = 0.0;
+  for (int k = 0; k < 8; ++k)
+  {
+    Rock rock;
+    rock.shape = makeShape(k % 2 ? Shape::Eota111 : Shape::Cube, k < 4 ? 30.0 : 5.0);
+    const Block block = blockOf(rock);
+    const double edge = std::cbrt(k < 4 ? 30.0 : 5.0);
+    rock.position = Vec3(50.0 + 0.3 * k, 50.0 - 1.5 * edge, 100.0 + 1.2 * edge);
+    rock.velocity = Vec3(0.5, 8.0 + k % 4, -6.0);
+    rock.orientation = Quat(Eigen::AngleAxisd(0.15 * (k % 4), Vec3(0.3, 0.7, 0.2).normalized()));
+    SimulationParameters p;
+    p.endTime = 4.0;
+    p.outputInterval = 0.02;
+    const Trajectory t = simulate(terrain, rock, p);
+    double deepest = 0.0;
+    for (const Sample& s : t.samples)
+    {
+      BlockState state;
+      state.position = s.position;
+      state.orientation = s.orientation;
+      deepest = std::max(deepest,
+        deepestOverlap(
+          2, [&](int i) -> const Block& { return i == 0 ? block : wall; },
+          [&](int i) { return i == 0 ? state : standing; }));
+    }
+    EXPECT_LT(deepest, 0.02 * edge) << k;
+    for (const ImpactEvent& impact : t.impacts)
+    {
+      deepestScar = std::max(deepestScar, impact.scarDepth);
+    }
+    EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-3 * t.summary.energy.released) << k;
+  }
+  EXPECT_GT(deepestScar, 0.3);
 }
 
 TEST(Scars, HardGroundIsTheirLimitInMassFalls)
