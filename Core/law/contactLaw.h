@@ -56,8 +56,14 @@ struct ContactLaw
 
   /// For a gap at the end of the step and a travel along the tangents (m), over `h` (s). Returns
   /// whether the state has changed.
-  bool evaluate(bool lasting, double h, double gap, const Eigen::Vector2d& travel)
+  bool evaluate(
+    bool lasting, double h, double gap, const Eigen::Vector2d& travel, bool pulls = false)
   {
+    if (pulls)
+    {
+      this->pull(gap, travel);
+      return true;
+    }
     this->gap1 = gap;
     const NormalSpring normal = lasting
       ? endSpring(this->penalty, gap)
@@ -107,6 +113,27 @@ struct ContactLaw
     changed = changed || now != this->state;
     this->state = now;
     return changed;
+  }
+
+  /// A lasting contact that is on the way to a solution, over a gap: its law goes on linearly.
+  void pull(double gap, const Eigen::Vector2d& travel)
+  {
+    this->gap1 = gap;
+    this->force = -this->penalty * gap;
+    this->stiffness = this->penalty;
+    this->share = 1.0;
+    this->shearCoupling.setZero();
+    this->shearStiffness.setZero();
+    if (this->state == ContactState::Locked)
+    {
+      this->shearForce = -this->shearPenalty * (this->slip0 + travel);
+      this->shearStiffness = this->shearPenalty * Eigen::Matrix2d::Identity();
+    }
+    else
+    {
+      this->shearForce = -this->friction * this->force * this->direction;
+      this->shearCoupling = -this->friction * this->stiffness * this->direction;
+    }
   }
 
   /// Of the spring at the end of the step, J.

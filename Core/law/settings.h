@@ -88,6 +88,11 @@ inline constexpr double kMostTimeStep = 0.1;
 /// Open–close has settled when no state changes and gaps move by less than this share of their
 /// change over the step. The energy error of a step is of the order of this share of its work.
 inline constexpr double kGapTolerance = 1e-7;
+/// Energy that the lag of a lasting step may give, share of m g r: more, and it is solved without.
+/// Larger: rocks that rattle are fed; smaller: more damping.
+inline constexpr double kGainOfLag = 1e-6;
+/// By how much rounding moves gaps from one iteration to the next, share of r.
+inline constexpr double kGapRounding = 3e-14;
 /// A correction turns back if its product with the last one is below −this times the square of the
 /// last: part of it is taken then. Lower: damping of corrections that converge.
 inline constexpr double kTurnsBack = 0.25;

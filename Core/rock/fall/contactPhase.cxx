@@ -119,7 +119,7 @@ void forgetFarContacts(Fall& fall, double h)
   RockBody& body = fall.body;
   const Vec3 spin = body.state.angularVelocity();
   const double r = body.block.radius();
-  const double bend = fall.parameters.gravity + spin.squaredNorm() * r;
+  const double bend = body.pull(fall.parameters.gravity) + spin.squaredNorm() * r;
   const double strains = body.state.strainRate.norm() * r;
   std::erase_if(body.contacts,
     [&](const Contact& c)
@@ -128,6 +128,13 @@ void forgetFarContacts(Fall& fall, double h)
       return !c.closed() &&
         c.gap() > (kFasterApproach * std::max(0.0, approach) + bend * h) * h + kHiddenGap * r;
     });
+}
+
+/// Energy of a rock, and what has been taken of it, after a step, J.
+double energyAfter(const RockBody& body, double gravity, const StepOutcome& outcome)
+{
+  return body.mechanicalEnergy(gravity) + outcome.springEnergy + outcome.frictionWork +
+    outcome.dampedWork;
 }
 
 /// One step of contact, halved until open–close settles: as far as steps that resolve an impact
@@ -167,17 +174,31 @@ void takeStep(Fall& fall, double h, StepKind kind, double small)
     lasting ? body.mechanicalEnergy(fall.parameters.gravity) + body.springEnergy : 0.0;
 
   StepOutcome outcome;
-  for (int cut = 0;; cut += !(request.duration >= small))
+  for (int cut = 0;;)
   {
     const bool last = cut >= fall.parameters.maxCuts;
     outcome = solver.step(body.block, request, body.contacts, body.state, last);
     summary.openCloseIterations += outcome.iterations;
-    if (outcome.settled || last)
+    if (!outcome.settled && !last)
     {
-      break;
+      ++summary.cutSteps;
+      cut += !(request.duration >= small);
+      request.duration *= 0.5;
+      continue;
     }
-    ++summary.cutSteps;
-    request.duration *= 0.5;
+    // Other contacts than in the last step have come to carry: its acceleration is none to go on with.
+    const bool lags = !(request.acceleration.isZero(0.0) && request.spinAcceleration.isZero(0.0));
+    if (lasting && lags &&
+      energyAfter(body, fall.parameters.gravity, outcome) > energyBefore +
+          kGainOfLag * body.block.mass() * fall.parameters.gravity * body.block.radius())
+    {
+      body.state = body.before;
+      body.contacts = body.contactsBefore;
+      request.acceleration.setZero();
+      request.spinAcceleration.setZero();
+      continue;
+    }
+    break;
   }
   if (fall.structures.solid() && undoAtTrees(fall, request.duration))
   {
@@ -237,7 +258,8 @@ void stayInContact(Fall& fall)
     const double speed =
       body.state.velocity.norm() + (body.state.spin.norm() + body.state.strainRate.norm()) * r;
     const double reach =
-      (kFasterApproach * speed + fall.parameters.gravity * ahead) * ahead + kHiddenGap * r;
+      (kFasterApproach * speed + body.pull(fall.parameters.gravity) * ahead) * ahead +
+      kHiddenGap * r;
     // What may close within the step: a gap that is not among the contacts has no spring in it.
     fall.ground.ensureCandidates(body, fall.structures, reach);
     findContacts(fall, fall.ground.candidates(), reach, quiet ? large : 0.0);
@@ -316,8 +338,9 @@ void stayInContact(Fall& fall)
 void findContacts(Fall& fall, const CandidatePairs& candidates, double reach, double h)
 {
   RockBody& body = fall.body;
-  updateContacts(
-    body.placed, fall.ground.patch(), candidates, reach, body.contacts, body.state.spin.norm() * h);
+  const double faster = body.pull(fall.parameters.gravity) / body.block.radius() * h; // rad/s
+  updateContacts(body.placed, fall.ground.patch(), candidates, reach, body.contacts,
+    (body.state.spin.norm() + faster) * h);
 }
 
 void guardPenetrations(Fall& fall, const CandidatePairs& candidates)

@@ -43,6 +43,12 @@ struct RockBody
       this->block.mass() * gravity * this->state.position.z();
   }
 
+  /// Most by which weight accelerates a point of it that topples over another, m/s².
+  double pull(double gravity) const
+  {
+    return gravity * this->block.mass() * this->block.largestMobility();
+  }
+
   const Block& block;
   bool done = false;                     ///< At rest, gone from the slope or out of time.
   bool inIsland = false;                 ///< The last step was that of an island.

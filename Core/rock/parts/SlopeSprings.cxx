@@ -97,7 +97,7 @@ double SlopeSprings::travelLimit(const RockBody& body) const
 {
   const double rim = body.state.spin.norm() * body.block.radius();
   const double speed =
-    body.state.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
+    body.state.velocity.norm() + rim + body.pull(parameters_.gravity) * parameters_.timeStep;
   return speed > 0.0 ? kTravelPerStep * body.block.radius() / speed : parameters_.timeStep;
 }
 

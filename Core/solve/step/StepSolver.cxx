@@ -30,6 +30,13 @@ Eigen::Matrix<double, N, 1> rowOf(const Vec3& n, const Vec3& lever, const Vec3& 
   return row;
 }
 
+/// Of a moment m about the turned block, the derivative by the Cayley vector r of its turn:
+/// m · δφ = Tᵀ m · δr, where the rotation changes by δφ = T δr = (δr + ½ r × δr) / (1 + ¼ r²).
+Vec3 byCayley(const Vec3& m, const Vec3& r)
+{
+  return (m - 0.5 * r.cross(m)) / (1.0 + 0.25 * r.squaredNorm());
+}
+
 /// Inertia, or its inverse, times x: of translation and rotation alone two blocks are not zero.
 template <int N>
 Eigen::Matrix<double, N, 1> timesInertia(
@@ -128,6 +135,7 @@ void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
     law.state = c.state;
     law.share = 1.0;
     law.direction.setZero();
+    row.held = false;
   }
 }
 
@@ -153,7 +161,8 @@ void BlockStep<N>::levers(
     {
       // The slope's node rests, the rock's face turns: Δd = n_m·u + r·(y_m × n_m) + … exactly, with
       // normal and node averaged over the step as the block sees them.
-      const Vec3 n = 0.5 * (row.n + turn * row.n);
+      row.end = turn * row.n;
+      const Vec3 n = 0.5 * (row.n + row.end);
       const Vec3 y = row.y0 - 0.5 * u;
       row.normal = rowOf<N>(n, y, row.x);
       for (int k = 0; k < 2; ++k)
@@ -170,6 +179,7 @@ void BlockStep<N>::levers(
       const Mat3 axes = roundAxes(block.shape().layout());
       const Vec3 end = turn.transpose() * row.n, n = 0.5 * (row.n + end);
       const Vec3 y = -2.0 / ((axes * row.n).norm() + (axes * end).norm()) * (axes * (axes * n));
+      row.end = -1.0 / (axes * end).norm() * (turn * Vec3(axes * (axes * end)));
       row.normal = rowOf<N>(row.n, y, row.x);
       row.normal.template segment<3>(kRotation) = y.cross(n);
       for (int k = 0; k < 2; ++k)
@@ -178,7 +188,9 @@ void BlockStep<N>::levers(
       }
       continue;
     }
-    Vec3 n = row.n, x = row.x, y0 = row.y0;
+    Vec3 x = row.x, y0 = row.y0;
+    row.mean = row.n;
+    row.crosses = false;
     if (contacts[i].kind == ContactKind::EdgeEdge)
     {
       // The normal turns with the rock's edge and the crossing moves along it: both as of mid-step,
@@ -188,23 +200,75 @@ void BlockStep<N>::levers(
       const Vec3& x1 = block.shape().vertices()[ends[1]];
       const auto middle = [&](const Vec3& start, const Vec3& point)
       { return Vec3(0.5 * (start + turn * strained(start, point) + u)); };
-      const Vec3 p0 = middle(row.edge[0], x0), along = middle(row.edge[1], x1) - p0;
+      const Vec3 p0 = middle(row.edge[0], x0);
+      row.along = middle(row.edge[1], x1) - p0;
       double s, t;
-      if (closestOnLines(p0, along, row.ridge[0], row.ridge[1], s, t))
+      row.crosses = closestOnLines(p0, row.along, row.ridge[0], row.ridge[1], s, t);
+      if (row.crosses)
       {
-        const Vec3 cross = along.cross(row.ridge[1]).normalized();
-        n = cross.dot(row.n) < 0.0 ? Vec3(-cross) : cross;
+        const Vec3 cross = row.along.cross(row.ridge[1]).normalized();
+        row.mean = cross.dot(row.n) < 0.0 ? Vec3(-cross) : cross;
         x = x0 + s * (x1 - x0);
         y0 = deform_ * x;
       }
     }
-    const Vec3 y1 = strained(y0, x);
-    const Vec3 z = 0.5 * (y1 + turn * y1);
-    row.normal = rowOf<N>(n, z, x);
+    row.start = strained(y0, x);
+    row.end = turn * row.start;
+    const Vec3 z = 0.5 * (row.start + row.end);
+    row.normal = rowOf<N>(row.mean, z, x);
     for (int k = 0; k < 2; ++k)
     {
       row.shear[k] = rowOf<N>(row.tangent[k], z, x);
     }
+  }
+}
+
+template <int N>
+void BlockStep<N>::derive(Row& row, const Contact& contact, const VecN& d) const
+{
+  const Vec3 u = d.template head<3>(), r = d.template segment<3>(kRotation);
+  if (contact.kind == ContactKind::FaceVertex)
+  {
+    row.gapRate.template head<3>() = row.end;
+    row.gapRate.template segment<3>(kRotation) = byCayley(row.end.cross(u - row.y0), r);
+    for (int k = 0; k < 2; ++k)
+    {
+      row.travelRate[k].template head<3>() -= 0.5 * row.tangent[k].cross(r);
+    }
+    return;
+  }
+  if (contact.rockFeature < 0)
+  {
+    row.gapRate.template segment<3>(kRotation) = byCayley(row.end.cross(row.n), r);
+    return;
+  }
+  // An edge that moves and turns crosses the ridge at another of its points, which goes another way.
+  Vec3 side = Vec3::Zero(), turning = Vec3::Zero();
+  if (row.crosses)
+  {
+    side = row.ridge[1].cross(row.mean);
+    side /= row.along.dot(side);
+    turning = row.along - (row.edge[1] - row.edge[0]);
+  }
+  const auto rateAlong = [&](VecN& rate, const Vec3& direction)
+  {
+    const Vec3 further = direction.dot(turning) * side;
+    rate.template head<3>() -= further;
+    rate.template segment<3>(kRotation) = byCayley(row.end.cross(direction - further), r);
+  };
+  rateAlong(row.gapRate, row.mean);
+  for (int k = 0; k < 2; ++k)
+  {
+    rateAlong(row.travelRate[k], row.tangent[k]);
+  }
+  if (row.crosses)
+  {
+    // The normal turns by half of what the edge turns.
+    const Vec3 way = u + row.end - row.start, across = way - row.mean.dot(way) * row.mean;
+    const Vec3 edge = 2.0 * row.along - (row.edge[1] - row.edge[0]);
+    row.gapRate.template segment<3>(kRotation) +=
+      byCayley(edge.cross(row.ridge[1].cross(across)), r) /
+      (2.0 * row.mean.dot(row.along.cross(row.ridge[1])));
   }
 }
 
@@ -219,7 +283,8 @@ typename BlockStep<N>::Change BlockStep<N>::evaluate(const StepRequest& request,
     of.gap = std::max(of.gap, std::abs(gap - row.law.gap1));
     of.way = std::max(of.way, std::abs(way));
     const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-    of.state = row.law.evaluate(lasting, request.duration, gap, travel) || of.state;
+    const bool pulls = row.held && gap > 0.0;
+    of.state = row.law.evaluate(lasting, request.duration, gap, travel, pulls) || pulls || of.state;
   }
   return of;
 }
@@ -228,17 +293,17 @@ template <int N>
 typename BlockStep<N>::VecN BlockStep<N>::solveOne(
   const Row& row, const VecN& load, const VecN& d) const
 {
-  // In the contact's own directions: (I + F W) f = f(D) + F J (D − A⁻¹ load), W = J A⁻¹ Jᵀ.
+  // In the contact's own directions: (I + F W) f = f(D) + F J (D − A⁻¹ load), W = J A⁻¹ Tᵀ.
   const VecN free = timesInertia<N>(inverse_, load);
   if (row.law.state == ContactState::Open)
   {
     const VecN a = timesInertia<N>(inverse_, row.normal);
-    const double f = (row.law.force + row.law.stiffness * row.normal.dot(d - free)) /
-      (1.0 + row.law.stiffness * row.normal.dot(a));
+    const double f = (row.law.force + row.law.stiffness * row.gapRate.dot(d - free)) /
+      (1.0 + row.law.stiffness * row.gapRate.dot(a));
     return free + f * a;
   }
   Eigen::Matrix<double, N, 3> j;
-  j << row.normal, row.shear[0], row.shear[1];
+  j << row.gapRate, row.travelRate[0], row.travelRate[1];
   Eigen::Matrix<double, N, 3> a;
   a << timesInertia<N>(inverse_, row.normal), timesInertia<N>(inverse_, row.shear[0]),
     timesInertia<N>(inverse_, row.shear[1]);
@@ -281,19 +346,18 @@ typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
     {
       continue;
     }
-    // Newton: f(D') ≈ f(D) − k nᵀT (D' − D)
-    const VecN& n = row.normal;
-    matrix.noalias() += (row.law.stiffness * n) * n.transpose();
-    right += (row.law.force + row.law.stiffness * n.dot(d)) * n;
+    // Newton: f(D') ≈ f(D) − k ∂gap/∂D (D' − D)
+    matrix.noalias() += (row.law.stiffness * row.normal) * row.gapRate.transpose();
+    right += (row.law.force + row.law.stiffness * row.gapRate.dot(d)) * row.normal;
     if (row.law.state == ContactState::Open)
     {
       continue;
     }
     for (int a = 0; a < 2; ++a)
     {
-      VecN gradient = row.law.shearCoupling[a] * n;
-      gradient += row.law.shearStiffness(a, 0) * row.shear[0];
-      gradient += row.law.shearStiffness(a, 1) * row.shear[1];
+      VecN gradient = row.law.shearCoupling[a] * row.gapRate;
+      gradient += row.law.shearStiffness(a, 0) * row.travelRate[0];
+      gradient += row.law.shearStiffness(a, 1) * row.travelRate[1];
       matrix.noalias() += row.shear[a] * gradient.transpose();
       right += (row.law.shearForce[a] + gradient.dot(d)) * row.shear[a];
     }
@@ -348,33 +412,78 @@ typename BlockStep<N>::VecN BlockStep<N>::firstGuess(
 }
 
 template <int N>
+typename BlockStep<N>::VecN BlockStep<N>::turningLoad(
+  const Balance& of, double h, const Quat& turn, const VecN& d, bool whole)
+{
+  // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ (METHOD 10.4).
+  const VecN velocity1 = of.rate * d + of.offset;
+  const Vec3 momentum = mass_.template middleRows<3>(kRotation) * velocity1;
+  const Vec3 carried = turn * momentum;
+  VecN load = of.load;
+  load.template segment<3>(kRotation) -= (carried - momentum) / h;
+  if (N == 6 && whole)
+  {
+    // p₁ grows with D by rate · J, and R₁ turns it.
+    const Vec3 r = d.template segment<3>(kRotation);
+    const Mat3 rotation = turn.toRotationMatrix();
+    const Mat3 inertia = mass_.template bottomRightCorner<3, 3>();
+    Mat3 turning;
+    for (int k = 0; k < 3; ++k)
+    {
+      turning.row(k) = byCayley(carried.cross(Vec3::Unit(k)), r); // eₖ · (δφ × R₁ p₁)
+    }
+    const Mat3 a = (of.rate * (rotation * inertia) + turning) / h;
+    load.template segment<3>(kRotation) += a * r - (of.rate / h) * (inertia * r);
+    inert_.template bottomRightCorner<3, 3>() = a;
+    inverse_.template bottomRightCorner<3, 3>() = a.inverse();
+  }
+  return load;
+}
+
+template <int N>
 bool BlockStep<N>::iterate(const Block& block, const StepRequest& request,
   const std::vector<Contact>& contacts, const Balance& of, VecN& d, int& iterations)
 {
+  // Over a long step directions and levers turn by so much that a stiff spring opens and closes for
+  // ever where Newton's matrix leaves that out; a step that resolves an impact has no need of it.
+  const bool whole = request.kind == StepKind::Lasting;
   Quat turn = cayley(d.template segment<3>(kRotation));
   this->levers(block, contacts, turn, d);
   this->evaluate(request, d);
   VecN last = VecN::Zero();
   double share = 1.0; // of the correction that is taken
-  bool settled = false;
+  bool settled = false, changed = false;
   for (; iterations < request.maxOpenClose && !settled; ++iterations)
   {
-    // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ
-    // (METHOD 10.4).
-    VecN load = of.load;
-    const VecN velocity1 = of.rate * d + of.offset;
-    const Vec3 spinMomentum = mass_.template middleRows<3>(kRotation) * velocity1;
-    load.template segment<3>(kRotation) -= (turn * spinMomentum - spinMomentum) / request.duration;
+    const VecN load = this->turningLoad(of, request.duration, turn, d, whole);
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+    {
+      if (rows_[i].law.acts())
+      {
+        rows_[i].gapRate = rows_[i].normal;
+        rows_[i].travelRate = rows_[i].shear;
+        if (whole)
+        {
+          this->derive(rows_[i], contacts[i], d);
+        }
+      }
+    }
     const VecN next = this->solve(load, d);
     if (!next.allFinite())
     {
       break;
     }
+    for (Row& row : rows_)
+    {
+      row.held = whole && row.law.acts() &&
+        row.law.force + row.law.stiffness * row.gapRate.dot(d - next) > 0.0;
+    }
     // A contact that hardly slips can throw the iteration from one side of the friction cone's tip
-    // to the other for ever: when a correction turns back, only part of it is taken.
+    // to the other for ever: when a correction turns back, only part of it is taken. Where a contact
+    // has just closed, opened or locked, turning back is what brings it to its place.
     const VecN correction = next - d;
     const double back = correction.template head<6>().dot(last.template head<6>());
-    if (iterations > 1 && back < -kTurnsBack * last.template head<6>().squaredNorm())
+    if (iterations > 1 && !changed && back < -kTurnsBack * last.template head<6>().squaredNorm())
     {
       share = std::max(0.5 * share, kLeastCorrection);
     }
@@ -387,10 +496,12 @@ bool BlockStep<N>::iterate(const Block& block, const StepRequest& request,
     turn = cayley(d.template segment<3>(kRotation));
     this->levers(block, contacts, turn, d);
     const Change change = this->evaluate(request, d);
+    changed = change.state;
     // The rotation itself, for the gyroscopic term, converges with the gaps; without contacts it
     // alone decides.
     const double turned = correction.template segment<3>(kRotation).norm();
-    settled = share == 1.0 && !change.state && change.gap <= kGapTolerance * change.way + 1e-15 &&
+    settled = share == 1.0 && !changed &&
+      change.gap <= kGapTolerance * change.way + kGapRounding * block.radius() &&
       turned <= kGapTolerance * d.template segment<3>(kRotation).norm() + 1e-13;
   }
   return settled;

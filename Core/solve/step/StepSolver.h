@@ -77,7 +77,7 @@ public:
 private:
   struct Row
   {
-    VecN normal;                 ///< nᵀT
+    VecN normal;                 ///< nᵀT: the gap changes by its product with D.
     std::array<VecN, 2> shear;   ///< lᵀT for two directions in the contact's plane.
     std::array<Vec3, 2> tangent; ///< Body axes.
     Vec3 n;                      ///< Body axes of the step's start.
@@ -86,6 +86,19 @@ private:
     std::array<Vec3, 2> ridge;   ///< EdgeEdge: point and direction about the centroid, body axes.
     std::array<Vec3, 2> edge;    ///< The ends of the rock's edge likewise, at the start.
     ContactLaw law;
+
+    /// The last solution has it pressed: over a small gap, which its linear form did not see, it pulls
+    /// in the next one. If it were let go the rock would fall, and be pressed again, for ever.
+    bool held = false;
+
+    // As of D
+    Vec3 start, end; ///< Place of x without and with the turn; of a face only its normal, turned.
+    Vec3 mean;       ///< Normal of mid-step.
+    Vec3 along;      ///< The rock's edge at mid-step.
+    bool crosses;    ///< Whether it is not along the ridge.
+    // Derivatives of what `normal` and `shear` make of D, by D: they change with it.
+    VecN gapRate;
+    std::array<VecN, 2> travelRate;
   };
 
   /// What the unknowns D of a step must balance: A D = load + contacts, Ḋ¹ = rate · D + offset.
@@ -107,6 +120,9 @@ private:
     const std::vector<Contact>& contacts);
   void levers(
     const Block& block, const std::vector<Contact>& contacts, const Quat& rotation, const VecN& d);
+  void derive(Row& row, const Contact& contact, const VecN& d) const; ///< Of what acts.
+  /// Forces but those of contacts, linearised about D: returns b with A D' = b + contacts, and sets A.
+  VecN turningLoad(const Balance& of, double h, const Quat& turn, const VecN& d, bool whole);
   /// Change by an iteration.
   struct Change
   {

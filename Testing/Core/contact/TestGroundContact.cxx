@@ -151,6 +151,35 @@ TEST(GroundContact, OneClassEverywhereIsTheUniformSlope)
   }
 }
 
+// Newton's matrix has what turns within a step: directions, levers, momentum.
+TEST(GroundContact, LongStepsOfSlidingRocksAreNotCut)
+{
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> rough(0.0, 0.1);
+  const Terrain terrain = makeSlope(
+    101, 1.0, [&](double x, double) { return 100.0 - 0.58 * x + rough(random); },
+    material(0.0, 15.0));
+  std::int64_t steps = 0, cut = 0, iterations = 0;
+  for (int k = 0; k < 12; ++k)
+  {
+    Rock rock;
+    rock.shape = makeShape(k % 2 ? Shape::Cube : Shape::Icosahedron, 1.0);
+    rock.position =
+      Vec3(10.0 + k, 20.0 + 4.0 * k, terrain.elevation(10.0 + k, 20.0 + 4.0 * k) + 1.5);
+    rock.velocity = Vec3(3.0, 0.0, 0.0);
+    rock.orientation = Quat(1.0, 0.1 * k, 0.3, -0.05 * k).normalized();
+    SimulationParameters p = parameters(6.0);
+    p.rigid = true;
+    const Trajectory t = simulate(terrain, rock, p);
+    steps += t.summary.contactSteps;
+    cut += t.summary.cutSteps;
+    iterations += t.summary.openCloseIterations;
+  }
+  EXPECT_GT(steps, 1000);
+  EXPECT_LT(double(cut), 0.002 * double(steps));
+  EXPECT_LT(double(iterations), 4.0 * double(steps));
+}
+
 TEST(GroundContact, APlateThatTopplesOntoItsFaceStaysOnTheGround)
 {
   // A step of lasting contact turns it from an edge onto the face, whose other corners did not face

@@ -118,16 +118,17 @@ TEST(ObstacleEdges, InsideACrestAreNotFeltByTumblingRocks)
     }
     impacts += a.summary.impacts;
     bias += (a.summary.stop - simulate(flat, rock, p).summary.stop) / 60.0;
-    if ((a.summary.stop - b.summary.stop).norm() < 1e-9)
-    {
-      ++same;
-      continue;
-    }
     const std::size_t count = std::min(a.impacts.size(), b.impacts.size());
     std::size_t n = 0;
     while (n < count && std::abs(a.impacts[n].time - b.impacts[n].time) < 1e-9)
     {
       ++n;
+    }
+    // Rounding of 1e-12 m in the first impact has grown a thousand times after five.
+    if ((a.summary.stop - b.summary.stop).norm() < (n == count ? 1e-8 : 1e-9))
+    {
+      ++same;
+      continue;
     }
     ASSERT_LT(n, count);
     const ImpactEvent &i = a.impacts[n], &j = b.impacts[n];
