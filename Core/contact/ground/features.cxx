@@ -57,10 +57,21 @@ bool isStraightOver(const SurfacePatch& patch, const SurfacePatch::Triangle& t, 
   return true;
 }
 
-bool cameThrough(const SurfacePatch& patch, int triangle, const Vec3& point, double distance)
+bool cameThrough(const PlacedBlock& rock, const SurfacePatch& patch, int triangle,
+  const Vec3& point, double distance)
 {
   const int walls = patch.slopeTriangles + patch.wallTriangles;
-  if (patch.wallTriangles == 0 || distance >= 0.0 || triangle >= walls)
+  if (distance >= 0.0)
+  {
+    return true;
+  }
+  if (triangle >= walls)
+  {
+    // A rock before a thin obstacle is behind the far side of it, too.
+    const SurfacePatch::Triangle& t = patch.triangles[triangle];
+    return t.normal.dot(rock.position()) > t.offset;
+  }
+  if (patch.wallTriangles == 0)
   {
     return true;
   }
@@ -178,7 +189,7 @@ std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const Sur
     return std::nullopt;
   }
   if (!inVertexCone(rock, vertex, t.normal, kConeSlack + turn) ||
-    !cameThrough(patch, triangle, p, distance))
+    !cameThrough(rock, patch, triangle, p, distance))
   {
     return std::nullopt;
   }

@@ -25,9 +25,11 @@ bool isStraightOver(
 
 /// Whether a point `distance` (m) over the plane of a triangle that it projects inside got there
 /// through this triangle. Where the ground ends in walls, that is so for a point in the ground that
-/// has no shorter way out through one of them, or, of a wall, through the slope. Anywhere else it
-/// is taken to be.
-bool cameThrough(const SurfacePatch& patch, int triangle, const Vec3& point, double distance);
+/// has no shorter way out through one of them, or, of a wall, through the slope. Of an obstacle it
+/// is where the middle of the rock is outside: before a thin one it is behind the far side, too.
+/// Anywhere else it is taken to be.
+bool cameThrough(const PlacedBlock& rock, const SurfacePatch& patch, int triangle,
+  const Vec3& point, double distance);
 /// The same of an edge of the rock `distance` (m) over a ridge that it crosses: an upright one,
 /// between walls, has it beside it unless a face of the rock is over the top, or less deep under
 /// it.

@@ -100,7 +100,7 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
       (pair.patch < patch.slopeTriangles ? isStraightOver(patch, t, p)
                                          : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&
             inVertexCone(rock, pair.rock, t.normal, kConeSlack)) &&
-      cameThrough(patch, pair.patch, p, distance) &&
+      cameThrough(rock, patch, pair.patch, p, distance) &&
       !visit(ContactKind::VertexFace, pair.rock, pair.patch, distance))
     {
       return false;

@@ -6,6 +6,7 @@
 #include "piles.h"
 #include "rock/placement.h"
 #include "solve/island/SoftSolver.h"
+#include "terrain/structures.h"
 
 #include <gtest/gtest.h>
 
@@ -226,6 +227,60 @@ TEST(Pinched, StepThatMissesDeeplyIsCut)
       }
       EXPECT_EQ(solver.finish().accepted, !cut);
       EXPECT_NEAR(state.position.z(), cut ? 0.0 : -1e-3, 1e-12);
+    }
+  }
+}
+
+// A boulder drives a stone against an upright wall. Behind its far side, too, it is not drawn in.
+TEST(Pinched, StoneBetweenABoulderAndAThinWallStaysBeforeIt)
+{
+  const auto runs = [](double width, double side, double boulder, double speed, double step)
+  {
+    constexpr double face = 100.0; // m, along x
+    Pile pile;
+    pile.ground = makeSlope(
+      41, 5.0, [](double, double) { return 0.0; }, material(0.5, 20.0));
+    Embankment wall;
+    wall.points = { { face + 0.5 * width, 20.0 }, { face + 0.5 * width, 180.0 } };
+    wall.height = 6.0;
+    wall.crestWidth = width;
+    wall.mountainSlope = wall.valleySlope = 0.0;
+    Structures structures;
+    structures.embankments = { wall };
+    pile.ground.setStructures(structures);
+    pile.parameters.timeStep = step;
+    pile.parameters.endTime = 0.8;
+    pile.parameters.outputInterval = 0.01;
+    pile.parameters.rockRestitution = 0.3;
+    const double x = face - 0.05 - 0.5 * side;
+    pile.rocks = { brick(Vec3(side, side, side), Vec3(x, 100.0, 0.5 * side + 0.001), 0),
+      brick(Vec3(boulder, boulder, boulder),
+        Vec3(x - 0.5 * side - 0.5 * boulder - 0.5, 100.0, 0.5 * boulder + 0.01), 1) };
+    pile.rocks[1].velocity = Vec3(speed, 0.0, 0.0);
+    pile.make();
+    return pile.fall->run();
+  };
+  for (const double step : { 0.01, 0.005 })
+  {
+    for (const double side : { 0.3, 0.5 })
+    {
+      for (const double boulder : { 1.5, 2.5 })
+      {
+        for (const double speed : { 10.0, 25.0 })
+        {
+          for (const double width : { 0.125, 0.25, 1.0, 4.0 })
+          {
+            SCOPED_TRACE(::testing::Message()
+              << "wall " << width << " m, stone " << side << " m, boulder " << boulder << " m, "
+              << speed << " m/s, step " << step << " s");
+            const std::vector<Trajectory> rocks = runs(width, side, boulder, speed, step);
+            for (const Sample& s : rocks[0].samples)
+            {
+              EXPECT_LT(s.position.x() + 0.5 * side, 100.0 + 0.05 * side) << s.time;
+            }
+          }
+        }
+      }
     }
   }
 }
