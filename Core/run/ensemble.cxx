@@ -15,9 +15,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -247,6 +249,12 @@ std::vector<Trajectory> Ensemble::simulate(
   {
     trajectory.summary.rock = rock;
     trajectory.summary.iteration = iteration;
+    if (!trajectory.summary.stop.allFinite() || !std::isfinite(trajectory.summary.endTime))
+    {
+      throw Error("rock " + std::to_string(rock) + " (block " +
+        std::to_string(trajectory.summary.blockId) + ") of iteration " + std::to_string(iteration) +
+        " is nowhere at its end: an error of the program, not of its input");
+    }
     trajectory.summary.hash = motionHash(trajectory);
     thin(trajectory, own.kept.samples);
   };

@@ -115,7 +115,7 @@ bool brakeBehindNet(Fall& fall, double distance)
   double room = 0.0, foot = ground(0.0), rise = 0.0;
   for (int k = 1; k <= kBrakingPlaces; ++k)
   {
-    const double next = distance * k / kBrakingPlaces;
+    const double next = std::min(distance, distance * k / kBrakingPlaces); // no rounding beyond it
     foot = std::min(ground(next), foot + std::max(0.0, slope(next) - slope(room)));
     if (!(ground(next + body.block.radius()) <= foot + centre))
     {

@@ -158,6 +158,25 @@ TEST(Barriers, BrakeOnAWayBehindTheLine)
   EXPECT_EQ(fall(braking, at.time + 0.01).summary.stop, at.position);
 }
 
+// Of some 3 in 100 distances the last of 120 equal parts is, as rounded, beyond the whole.
+TEST(Barriers, EveryBrakedRockComesToRestSomewhere)
+{
+  Terrain terrain = makePlane(21, 100.0, 0.1, 0.0, material(0.5, 20.0));
+  Structures s = withBarrier(30.0, 1e6).obstacles()->structures();
+  s.barriers[0].braking = 5.0;
+  terrain.setStructures(s);
+  for (int k = 0; k < 200; ++k)
+  {
+    const double speed = 10.0 + 0.05 * k;
+    const Trajectory t = simulate(terrain, thrown(6.0, speed), rigidFor(5.0));
+    ASSERT_EQ(t.summary.fate, Fate::Caught) << speed;
+    EXPECT_TRUE(t.summary.stop.allFinite() && std::isfinite(t.summary.endTime)) << speed;
+    EXPECT_NEAR(
+      (t.summary.stop - t.structures[0].position).norm(), t.structures[0].brakingDistance, 1e-9)
+      << speed;
+  }
+}
+
 TEST(Barriers, RecordWithoutAnyEffect)
 {
   Trajectory bare =
