@@ -6,6 +6,7 @@
 #include "shared/cells.h"
 #include "shared/errorReport.h"
 #include "shared/inputContent.h"
+#include "shared/rockPaths.h"
 
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
@@ -155,6 +156,10 @@ std::vector<std::string> doubtsOn(vtkPolyData* trajectories, vtkPolyData* mesh)
   }
   vtkFieldData* fields = trajectories->GetFieldData();
   std::ranges::move(doubtsOfRun(fields), std::back_inserter(notes));
+  if (isRunning(fields))
+  {
+    notes.emplace_back("The run goes on: these are its rocks so far");
+  }
   if (const std::int64_t copies = copiesIn(trajectories); copies > 0)
   {
     notes.push_back(std::to_string(copies) +

@@ -7,6 +7,7 @@
 #include "shared/cells.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
+#include "shared/rockPaths.h"
 #include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
 #include "shared/withAbort.h"
@@ -221,6 +222,7 @@ void vtkTrajectoryLayerWriter::WriteData()
   try
   {
     taken.require();
+    rockfall::filters::requireWhole(data->GetFieldData(), this->FileName + ": the Input");
     if (data->GetNumberOfLines() == 0 && data->GetNumberOfVerts() == 0)
     {
       throw rockfall::DataError(

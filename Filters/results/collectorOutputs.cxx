@@ -257,8 +257,9 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
   return notes;
 }
 
-void writeReleased(const ReleasedRocks& released, vtkFieldData* field)
+void writeReleased(const ReleasedRocks& released, std::size_t crossings, vtkFieldData* field)
 {
+  addArray<vtkIdTypeArray>(field, kCollectorCrossings)->InsertNextValue(vtkIdType(crossings));
   addArray<vtkIdTypeArray>(field, "CollectorReleased")->InsertNextValue(vtkIdType(released.size()));
   const auto rocks = addArray<vtkIntArray>(field, "CollectorRocks", 2);
   const auto blocks = addArray<vtkIdTypeArray>(field, "CollectorBlocks");
@@ -315,7 +316,7 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   output->SetPoints(points);
   output->SetVerts(vertices);
   vtkFieldData* field = output->GetFieldData();
-  writeReleased(released, field);
+  writeReleased(released, crossings.size(), field);
   const auto lineNames = addArray<vtkStringArray>(field, "CollectorLineName");
   const auto barriers = addArray<vtkDoubleArray>(field, "CollectorBarrier", 2);
   const auto offsets = addArray<vtkDoubleArray>(field, "CollectorOffset");

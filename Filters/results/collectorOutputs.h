@@ -24,6 +24,7 @@ namespace rockfall::filters
 
 /// Field array of crossings: number of the content of the slope that their rocks fell on.
 inline constexpr char kCollectorSlope[] = "CollectorSlope";
+inline constexpr char kCollectorCrossings[] = "CollectorCrossings";
 /// The same of the properties that they fell by.
 inline constexpr char kCollectorRun[] = "CollectorRun";
 
@@ -82,14 +83,15 @@ std::vector<CollectorLine> linesOf(
   vtkPolyData* input, const Vec3& origin, const CollectorLine& barrier);
 
 /// Writes a vertex per passing. Other cell arrays of the trajectories go along.
-/// The field data say what the tables need beside: CollectorReleased,
+/// The field data say what the tables need beside: CollectorReleased, CollectorCrossings,
 /// CollectorRocks, CollectorBlocks, CollectorLosses, CollectorEnds,
 /// CollectorLineName, CollectorBarrier, CollectorOffset, CollectorSlope and CollectorRun.
 void writeCrossings(std::span<const CollectedCrossing> crossings,
   std::span<const CollectorLine> lines, const ReleasedRocks& released, const Vec3& origin,
   vtkPolyData* trajectories, vtkPolyData* output);
 
-void writeReleased(const ReleasedRocks& released, vtkFieldData* field);
+/// The rocks that a collector looked at, and how many crossings it made.
+void writeReleased(const ReleasedRocks& released, std::size_t crossings, vtkFieldData* field);
 
 /// Writes a row per line.
 void writeLines(std::span<const LineSummary> summaries, std::span<const CollectorLine> lines,

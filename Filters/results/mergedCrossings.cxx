@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "results/collectorOutputs.h"
 #include "shared/arrays.h"
+#include "shared/inputContent.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/runOrigin.h"
 
@@ -19,6 +20,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -205,6 +207,25 @@ void requireReleased(
   }
 }
 
+/// Notes on the run of a collector's crossings, and on crossings that are no longer all.
+std::vector<std::string> doubtsOf(vtkPolyData* crossings, const std::string& name)
+{
+  std::vector<std::string> doubts = doubtsOfRun(crossings->GetFieldData());
+  vtkDataArray* made = crossings->GetFieldData()->GetArray(kCollectorCrossings);
+  if (made && made->GetNumberOfTuples() == 1 &&
+    crossings->GetNumberOfPoints() < made->GetComponent(0, 0))
+  {
+    doubts.push_back("The Input has " + std::to_string(crossings->GetNumberOfPoints()) +
+      " of the " + std::to_string(std::int64_t(made->GetComponent(0, 0))) +
+      " crossings of its collector: rocks that are left out count as not having come");
+  }
+  for (std::string& doubt : doubts)
+  {
+    doubt = name + doubt;
+  }
+  return doubts;
+}
+
 /// The point arrays of the inputs that have points, in the order of `places`.
 void copyArrays(std::span<vtkPolyData* const> inputs, std::span<const Place> places,
   vtkFieldData* pattern, vtkPointData* output)
@@ -266,6 +287,8 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
       throw DataError(numbered(k) + " has another CRS than the first");
     }
     runs.push_back(originOf(inputs[k]));
+    std::ranges::move(doubtsOf(inputs[k], inputs.size() > 1 ? numbered(k) + ": " : ""),
+      std::back_inserter(merged.notes));
     const ReleasedRocks released = releasedOf(field, k);
     if (inputs[k]->GetNumberOfPoints() > 0)
     {
@@ -277,7 +300,8 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     rocks.insert(rocks.end(), released.begin(), released.end());
   }
   checkReleased(rocks);
-  merged.notes = askAfterRuns(runs, [](std::size_t k) { return partName(k); });
+  std::ranges::move(askAfterRuns(runs, [](std::size_t k) { return partName(k); }),
+    std::back_inserter(merged.notes));
   merged.released = rocks;
   std::sort(
     places.begin(), places.end(), [](const Place& a, const Place& b) { return key(a) < key(b); });
@@ -313,7 +337,8 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
       field->AddArray(array);
     }
   }
-  writeReleased(rocks, field);
+  addTexts(field, kRunDoubts, merged.notes);
+  writeReleased(rocks, places.size(), field);
   copyCoordinateSystem(inputs[0]->GetFieldData(), field);
   return merged;
 }

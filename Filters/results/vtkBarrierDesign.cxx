@@ -127,6 +127,7 @@ int vtkBarrierDesign::RequestData(
           differing.add(ofLine);
         }
       }
+      std::ranges::move(merged.notes, std::back_inserter(notes));
       std::ranges::move(differing.notes(), std::back_inserter(notes));
       vtkNew<vtkTable> design, classes, sources, places;
       filters::writeDesign(lines, factors, design);

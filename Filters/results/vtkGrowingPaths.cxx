@@ -5,6 +5,7 @@
 #include "shared/cells.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
+#include "shared/rockPaths.h"
 #include "shared/withAbort.h"
 
 #include "vtkCellArray.h"
@@ -243,6 +244,7 @@ int vtkGrowingPaths::RequestData(
           }
         });
       growth.Finish(output);
+      rockfall::filters::markShownUntil(until, output->GetFieldData());
       rockfall::filters::rememberRanges(output);
       return 1;
     });

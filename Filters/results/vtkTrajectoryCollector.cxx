@@ -10,7 +10,9 @@
 #include "results/collectorOutputs.h"
 #include "results/lineWalls.h"
 #include "results/trajectoriesInput.h"
+#include "shared/arrays.h"
 #include "shared/errorReport.h"
+#include "shared/inputContent.h"
 #include "shared/inputs.h"
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
@@ -352,7 +354,8 @@ int vtkTrajectoryCollector::RequestData(
       barrier.barrierHeight = this->BarrierHeight;
       barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
       std::vector<CollectorLine> lines;
-      std::vector<std::string> notes = filters::doubtsOn(trajectories, mesh);
+      const std::vector<std::string> doubts = filters::doubtsOn(trajectories, mesh);
+      std::vector<std::string> notes = doubts;
       if (drawn)
       {
         if (drawn->GetNumberOfPoints() > 0)
@@ -398,6 +401,7 @@ int vtkTrajectoryCollector::RequestData(
       const auto released = std::int64_t(collected.released.size());
 
       vtkNew<vtkPolyData> passings, walls;
+      filters::addTexts(passings->GetFieldData(), filters::kRunDoubts, doubts);
       filters::writeCrossings(
         collected.crossings, lines, collected.released, origin, trajectories, passings);
       filters::writeWalls(lines, collected.summaries, slope,
@@ -406,7 +410,6 @@ int vtkTrajectoryCollector::RequestData(
       filters::writeLines(collected.summaries, lines, collected.lost, table);
       if (filters::isRunning(trajectories->GetFieldData()))
       {
-        notes.emplace_back("The run goes on: these are its rocks so far");
         filters::markRunning(exceedance->GetFieldData());
       }
       else

@@ -6,6 +6,7 @@
 #include "rock/results.h"
 #include "shared/cells.h"
 #include "shared/inputs.h"
+#include "shared/rockPaths.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
@@ -299,6 +300,7 @@ void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name)
   checkTuples(data->GetCellData(), count, name, "cell");
   if (kind == InputKind::Trajectories)
   {
+    requireWhole(data->GetFieldData(), name);
     checkPrecision(data, name);
   }
   for (const ArrayRule& rule : rules)

@@ -2,12 +2,14 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "base/text/numberText.h"
 #include "rock/results.h"
 #include "shared/arrays.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -37,6 +39,7 @@ vtkDataArray* needed(vtkFieldData* data, const char* kind, const char* name, int
 
 constexpr char retentionName[] = "TrajectoryOutput";
 constexpr char runningName[] = "RunGoesOn";
+constexpr char shownUntilName[] = "ShownUntil";
 
 } // namespace
 
@@ -44,6 +47,21 @@ void writeRetention(Retention retention, vtkFieldData* data)
 {
   constexpr const char* names[] = { "Nothing", "Stopping Points", "Events", "Thinned", "Full" };
   addArray<vtkStringArray>(data, retentionName)->InsertNextValue(names[int(retention)]);
+}
+
+void markShownUntil(double time, vtkFieldData* data)
+{
+  addArray<vtkDoubleArray>(data, shownUntilName)->InsertNextValue(time);
+}
+
+void requireWhole(vtkFieldData* data, const std::string& name)
+{
+  vtkDataArray* until = data->GetArray(shownUntilName);
+  if (until && until->GetNumberOfTuples() > 0)
+  {
+    throw DataError(name + " has paths up to " + numberText(until->GetComponent(0, 0)) +
+      " s (Growing Paths): the rest of a fall would not count. Connect what Growing Paths shows");
+  }
 }
 
 void markRunning(vtkFieldData* data)

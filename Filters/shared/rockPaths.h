@@ -9,6 +9,7 @@
 #include "vtkType.h"
 
 #include <functional>
+#include <string>
 
 class vtkFieldData;
 class vtkPolyData;
@@ -18,6 +19,11 @@ namespace rockfall::filters
 
 /// A field array that says what is kept of the trajectories.
 void writeRetention(Retention retention, vtkFieldData* data);
+
+/// Marks paths that are shown up to a time (s) only.
+void markShownUntil(double time, vtkFieldData* data);
+/// Throws DataError for such paths: half of a fall would count as a whole one.
+void requireWhole(vtkFieldData* data, const std::string& name);
 
 /// Marks trajectories of a run that goes on: there will be more, and that there is none yet is no
 /// error.

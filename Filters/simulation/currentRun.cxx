@@ -1,6 +1,8 @@
 #include "simulation/currentRun.h"
 
+#include "shared/arrays.h"
 #include "shared/errorReport.h"
+#include "shared/inputContent.h"
 #include "simulation/progressText.h"
 #include "simulation/runNotes.h"
 #include "simulation/sharedRun.h"
@@ -9,6 +11,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -124,7 +127,11 @@ void CurrentRun::follow()
   }
   if (made < kept_->ensemble->size() * kept_->ensemble->trajectoriesPerUnit())
   {
-    showNotes({ "Rockfall Simulation was " + how }, kept_->summary->GetFieldData());
+    const std::string note = "Rockfall Simulation was " + how;
+    showNotes({ note }, kept_->summary->GetFieldData());
+    // Rocks are made one after the other: those of whole sources may be missing.
+    addTexts(kept_->trajectories->GetFieldData(), kRunDoubts,
+      std::vector<std::string>{ note + ": shares and frequencies are of these alone" });
   }
 }
 

@@ -297,6 +297,41 @@ TEST_F(TestBarrierDesign, PartsAreTheWhole)
   }
 }
 
+// A Threshold of crossings leaves the rocks in the count that they are shares of.
+TEST_F(TestBarrierDesign, CrossingsThatAreLeftOutAreTold)
+{
+  const auto crossings = this->Collect();
+  vtkNew<vtkPolyData> some;
+  some->DeepCopy(crossings->GetOutput());
+  ASSERT_EQ(some->GetNumberOfPoints(), 10);
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkPointData> data;
+  data->CopyAllocate(some->GetPointData());
+  vtkNew<vtkCellArray> vertices;
+  for (vtkIdType k = 0; k < 4; ++k)
+  {
+    points->InsertNextPoint(some->GetPoint(k));
+    data->CopyData(some->GetPointData(), k, k);
+    vertices->InsertNextCell(1, &k);
+  }
+  some->SetPoints(points);
+  some->SetVerts(vertices);
+  some->GetPointData()->ShallowCopy(data);
+  this->Filter->SetInputData(some);
+  this->Filter->Update();
+  auto* notes = vtkStringArray::SafeDownCast(
+    this->Filter->GetOutputDataObject(0)->GetFieldData()->GetAbstractArray("Notes"));
+  ASSERT_NE(notes, nullptr);
+  EXPECT_EQ(notes->GetValue(0),
+    "The Input has 4 of the 10 crossings of its collector: rocks that are left out count as not "
+    "having come");
+  this->Filter->SetInputData(crossings->GetOutput());
+  this->Filter->Update();
+  notes = vtkStringArray::SafeDownCast(
+    this->Filter->GetOutputDataObject(0)->GetFieldData()->GetAbstractArray("Notes"));
+  EXPECT_TRUE(!notes || notes->GetValue(0).rfind("The Input has", 0) != 0);
+}
+
 TEST_F(TestBarrierDesign, BadInput)
 {
   const auto crossings = this->Collect();

@@ -6,7 +6,11 @@
 #include "vtkGrowingPaths.h"
 #include "vtkInformation.h"
 #include "vtkPointData.h"
+#include "vtkRockfallHazardMap.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTrajectoryCollector.h"
+
+#include <initializer_list>
 
 namespace
 {
@@ -106,6 +110,25 @@ TEST_F(TestGrowingPaths, TimeRangeIsThatOfTheTrajectories)
   double bounds[6];
   this->Filter->GetOutput()->GetCellBounds(2, bounds);
   EXPECT_DOUBLE_EQ(bounds[1], 185.0);
+}
+
+// At 3 s a rock that comes to rest at 8 s would count as one that rests there.
+TEST_F(TestGrowingPaths, WhatCountsRocksRefusesHalfOfAPath)
+{
+  vtkNew<vtkTrajectoryCollector> line;
+  line->SetInputConnection(this->Filter->GetOutputPort());
+  line->AddPoint(150.0, 0.0, 0.0);
+  line->AddPoint(150.0, 100.0, 0.0);
+  vtkNew<vtkRockfallHazardMap> map;
+  map->SetInputConnection(this->Filter->GetOutputPort());
+  map->SetCellSize(5.0);
+  for (vtkAlgorithm* product : std::initializer_list<vtkAlgorithm*>{ line, map })
+  {
+    product->UpdateTimeStep(3.0);
+    this->ExpectOneError({ "The Input has paths up to 3 s", "Growing Paths" });
+    product->UpdateTimeStep(8.0);
+    EXPECT_TRUE(this->Heard->Errors.empty());
+  }
 }
 
 TEST_F(TestGrowingPaths, OtherLinesAreRefused)
