@@ -15,8 +15,11 @@ with open(os.path.join(folder, "hill.asc"), "w") as file:
     file.write(f"ncols {n}\nnrows {n}\nxllcorner 2600000\nyllcorner 1200000\ncellsize {cell}\nnodata_value -9999\n")
     for row in range(n):
         north = 1.0 - row / (n - 1)
-        # Steep in the upper third, flat in the valley, with a gully down the middle.
-        file.write(" ".join(
-            f"{900 + 320 / (1 + math.exp(-9 * (north - 0.62))) - 25 * math.exp(-((column / (n - 1) - 0.5) / 0.12) ** 2) * north:.2f}"
-            for column in range(n)) + "\n")
+        # Steep in the upper third, flat in the valley, with a gully down the middle. Banks around the valley keep every
+        # rock: one that left would move the camera and the notes.
+        def height(east):
+            bank = max(0.0, 1 - north / 0.08, (1 - min(east, 1 - east) / 0.06) * max(0.0, 1 - north / 0.6))
+            return (900 + 20 * bank + 320 / (1 + math.exp(-9 * (north - 0.62)))
+                    - 25 * math.exp(-((east - 0.5) / 0.12) ** 2) * north)
+        file.write(" ".join(f"{height(column / (n - 1)):.2f}" for column in range(n)) + "\n")
 sample_dem.write_geotiff(sample_dem.find_sample("jacksboro_fault_dem.npz"), os.path.join(folder, "jacksboro.tif"))
