@@ -56,14 +56,8 @@ struct ContactLaw
 
   /// For a gap at the end of the step and a travel along the tangents (m), over `h` (s). Returns
   /// whether the state has changed.
-  bool evaluate(
-    bool lasting, double h, double gap, const Eigen::Vector2d& travel, bool pulls = false)
+  bool evaluate(bool lasting, double h, double gap, const Eigen::Vector2d& travel)
   {
-    if (pulls)
-    {
-      this->pull(gap, travel);
-      return true;
-    }
     this->gap1 = gap;
     const NormalSpring normal = lasting
       ? endSpring(this->penalty, gap)

@@ -399,9 +399,12 @@ int Obstacles::materialOf(std::int64_t cfe) const
 
 bool Obstacles::isFirm(std::int64_t cfe) const
 {
-  const int material = this->treeOf(cfe) < 0 ? this->materialOf(cfe) : 0;
-  return this->treeOf(cfe) >= 0 ||
-    (material > 0 && !structures_.materials[std::size_t(material) - 1].yielding.scars());
+  if (this->treeOf(cfe) >= 0)
+  {
+    return true;
+  }
+  const int material = this->materialOf(cfe);
+  return material > 0 && !structures_.materials[std::size_t(material) - 1].yielding.scars();
 }
 
 double Obstacles::embankmentTop(double x, double y) const

@@ -49,7 +49,7 @@ public:
     const double foot = kFootDepth + terrain.roughnessDepth();
     for (int side = 0; side < 2; ++side)
     {
-      // Beside a scar a wall is met down to the bottom of it; gentler sides would spread too far.
+      // A wall beside a scar is met down to the bottom of it; gentler sides would spread too far.
       const bool wall = slope_[side] < kSteepestScar;
       margin_[side] = foot + (wall && terrain.yields() ? kScarBesideWall : 0.0);
     }

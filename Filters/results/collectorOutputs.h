@@ -24,9 +24,10 @@ namespace rockfall::filters
 
 /// Field array of crossings: number of the content of the slope that their rocks fell on.
 inline constexpr char kCollectorSlope[] = "CollectorSlope";
-inline constexpr char kCollectorCrossings[] = "CollectorCrossings";
 /// The same of the properties that they fell by.
 inline constexpr char kCollectorRun[] = "CollectorRun";
+/// Field array of crossings: how many their collector made.
+inline constexpr char kCollectorCrossings[] = "CollectorCrossings";
 
 /// A passing and the cell of its trajectory.
 struct CollectedCrossing

@@ -287,7 +287,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
       throw DataError(numbered(k) + " has another CRS than the first");
     }
     runs.push_back(originOf(inputs[k]));
-    std::ranges::move(doubtsOf(inputs[k], inputs.size() > 1 ? numbered(k) + ": " : ""),
+    std::ranges::move(doubtsOf(inputs[k], inputs.size() > 1 ? partName(k) + ": " : ""),
       std::back_inserter(merged.notes));
     const ReleasedRocks released = releasedOf(field, k);
     if (inputs[k]->GetNumberOfPoints() > 0)

@@ -112,7 +112,7 @@ TEST_F(TestGrowingPaths, TimeRangeIsThatOfTheTrajectories)
   EXPECT_DOUBLE_EQ(bounds[1], 185.0);
 }
 
-// At 3 s a rock that comes to rest at 8 s would count as one that rests there.
+// A rock that comes to rest at 8 s would count, at 3 s, as one that rests there.
 TEST_F(TestGrowingPaths, WhatCountsRocksRefusesHalfOfAPath)
 {
   vtkNew<vtkTrajectoryCollector> line;

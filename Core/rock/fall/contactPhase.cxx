@@ -130,11 +130,12 @@ void forgetFarContacts(Fall& fall, double h)
     });
 }
 
-/// Energy of a rock, and what has been taken of it, after a step, J.
-double energyAfter(const RockBody& body, double gravity, const StepOutcome& outcome)
+/// Energy that a step to where the rock is now has damped, J; < 0: made.
+double dampedIn(
+  const StepOutcome& outcome, double energyBefore, const RockBody& body, double gravity)
 {
-  return body.mechanicalEnergy(gravity) + outcome.springEnergy + outcome.frictionWork +
-    outcome.dampedWork;
+  return energyBefore - body.mechanicalEnergy(gravity) - outcome.springEnergy -
+    outcome.frictionWork - outcome.dampedWork;
 }
 
 /// One step of contact, halved until open–close settles: as far as steps that resolve an impact
@@ -189,8 +190,8 @@ void takeStep(Fall& fall, double h, StepKind kind, double small)
     // Other contacts than in the last step have come to carry: its acceleration is none to go on with.
     const bool lags = !(request.acceleration.isZero(0.0) && request.spinAcceleration.isZero(0.0));
     if (lasting && lags &&
-      energyAfter(body, fall.parameters.gravity, outcome) > energyBefore +
-          kGainOfLag * body.block.mass() * fall.parameters.gravity * body.block.radius())
+      dampedIn(outcome, energyBefore, body, fall.parameters.gravity) <
+        -kGainOfLag * body.block.mass() * fall.parameters.gravity * body.block.radius())
     {
       body.state = body.before;
       body.contacts = body.contactsBefore;
@@ -405,8 +406,7 @@ void commitStep(Fall& fall, StepKind kind, const StepOutcome& outcome, double en
   body.spinAcceleration = (body.state.spin - body.before.spin) / taken;
   if (lasting)
   {
-    body.energy.damping += energyBefore - body.mechanicalEnergy(fall.parameters.gravity) -
-      body.springEnergy - outcome.frictionWork - outcome.dampedWork - given;
+    body.energy.damping += dampedIn(outcome, energyBefore, body, fall.parameters.gravity) - given;
     keepAcceleration(fall);
     if (recovers)
     {

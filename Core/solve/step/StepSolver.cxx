@@ -30,8 +30,8 @@ Eigen::Matrix<double, N, 1> rowOf(const Vec3& n, const Vec3& lever, const Vec3& 
   return row;
 }
 
-/// Of a moment m about the turned block, the derivative by the Cayley vector r of its turn:
-/// m · δφ = Tᵀ m · δr, where the rotation changes by δφ = T δr = (δr + ½ r × δr) / (1 + ¼ r²).
+/// A moment m about the turned block by the Cayley vector r of its turn: m · δφ = Tᵀ m · δr, where the
+/// rotation changes by δφ = T δr = (δr + ½ r × δr) / (1 + ¼ r²).
 Vec3 byCayley(const Vec3& m, const Vec3& r)
 {
   return (m - 0.5 * r.cross(m)) / (1.0 + 0.25 * r.squaredNorm());
@@ -283,8 +283,13 @@ typename BlockStep<N>::Change BlockStep<N>::evaluate(const StepRequest& request,
     of.gap = std::max(of.gap, std::abs(gap - row.law.gap1));
     of.way = std::max(of.way, std::abs(way));
     const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-    const bool pulls = row.held && gap > 0.0;
-    of.state = row.law.evaluate(lasting, request.duration, gap, travel, pulls) || pulls || of.state;
+    if (row.held && gap > 0.0)
+    {
+      row.law.pull(gap, travel);
+      of.state = true;
+      continue;
+    }
+    of.state = row.law.evaluate(lasting, request.duration, gap, travel) || of.state;
   }
   return of;
 }
@@ -444,7 +449,7 @@ template <int N>
 bool BlockStep<N>::iterate(const Block& block, const StepRequest& request,
   const std::vector<Contact>& contacts, const Balance& of, VecN& d, int& iterations)
 {
-  // Over a long step directions and levers turn by so much that a stiff spring opens and closes for
+  // Directions and levers turn by so much over a long step that a stiff spring opens and closes for
   // ever where Newton's matrix leaves that out; a step that resolves an impact has no need of it.
   const bool whole = request.kind == StepKind::Lasting;
   Quat turn = cayley(d.template segment<3>(kRotation));

@@ -120,8 +120,10 @@ private:
     const std::vector<Contact>& contacts);
   void levers(
     const Block& block, const std::vector<Contact>& contacts, const Quat& rotation, const VecN& d);
-  void derive(Row& row, const Contact& contact, const VecN& d) const; ///< Of what acts.
-  /// Forces but those of contacts, linearised about D: returns b with A D' = b + contacts, and sets A.
+  /// Sets the derivatives of a row, which are its products' own so far, to what they are with the turn.
+  void derive(Row& row, const Contact& contact, const VecN& d) const;
+  /// Forces but those of contacts, linearised about D: returns b with A D' = b + contacts. `whole`: with
+  /// the turn of the momentum, and sets A.
   VecN turningLoad(const Balance& of, double h, const Quat& turn, const VecN& d, bool whole);
   /// Change by an iteration.
   struct Change

@@ -158,7 +158,7 @@ TEST(Barriers, BrakeOnAWayBehindTheLine)
   EXPECT_EQ(fall(braking, at.time + 0.01).summary.stop, at.position);
 }
 
-// Of some 3 in 100 distances the last of 120 equal parts is, as rounded, beyond the whole.
+// The last of 120 equal parts of a way is beyond the whole, as rounded, for some 3 in 100 ways.
 TEST(Barriers, EveryBrakedRockComesToRestSomewhere)
 {
   Terrain terrain = makePlane(21, 100.0, 0.1, 0.0, material(0.5, 20.0));

@@ -77,7 +77,7 @@ TEST(Scars, AreMadeOnEmbankmentsOfTheSlopesMaterialOnly)
   EXPECT_EQ(t.summary.energy.scars, 0.0);
 }
 
-// It is met where it stands, also by rocks that roll over it out of a scar beside it.
+// The wall is met where it stands, also by rocks that roll over it out of a scar beside it.
 TEST(Scars, AWallOfItsOwnMaterialDoesNotSinkWithThem)
 {
   const double height = 1.0, width = 1.0;
