@@ -35,6 +35,11 @@ void guardPenetration(const PlacedBlock& rock, const SurfacePatch& patch,
 bool overlaps(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
   double allowed);
 
+/// Whether a vertex, peak or edge of the candidates is that deep in what none of the contacts holds,
+/// edges deeper than any of these by so much: a step has gone past where they would have met.
+bool passed(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
+  double allowed, std::vector<Contact>& contacts);
+
 /// Adds an entrance unless the contacts that are already there stand for it.
 void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Contact>& contacts);
 

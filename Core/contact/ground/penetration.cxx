@@ -183,4 +183,29 @@ bool overlaps(const PlacedBlock& rock, const SurfacePatch& patch, const Candidat
   return !visitOverlaps(rock, patch, candidates, allowed, [](auto&&...) { return false; });
 }
 
+bool passed(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
+  double allowed, std::vector<Contact>& contacts)
+{
+  const std::size_t held = contacts.size();
+  guardPenetration(rock, patch, candidates, allowed, contacts);
+  const bool more = contacts.size() > held;
+  contacts.resize(held);
+  if (more || isRound(rock))
+  {
+    return more;
+  }
+  double deepest = 0.0;
+  for (const Contact& c : contacts)
+  {
+    deepest = std::min(deepest, c.distance);
+  }
+  const double travelled = candidates.travel.to(rock);
+  return std::any_of(candidates.edgeEdge.begin(), candidates.edgeEdge.end(),
+    [&](const CandidatePairs::Pair& pair)
+    {
+      return pair.over <= travelled &&
+        edgeEdge(rock, pair.rock, patch, pair.patch, deepest - allowed);
+    });
+}
+
 } // namespace rockfall

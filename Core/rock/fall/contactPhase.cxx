@@ -138,6 +138,18 @@ double dampedIn(
     outcome.frictionWork - outcome.dampedWork;
 }
 
+/// How deep a feature may be in the ground without a contact, m. A vertex that carries may be pressed
+/// in, and its neighbourhood with it; anything deeper slipped through.
+double looseOverlap(const RockBody& body)
+{
+  double pressed = 0.0;
+  for (const Contact& c : body.contacts)
+  {
+    pressed = std::max(pressed, std::min(-c.gap(), -c.distance)); // by force, and by place
+  }
+  return kLooseOverlap * body.block.radius() + 2.0 * pressed;
+}
+
 /// One step of contact, halved until open–close settles: as far as steps that resolve an impact
 /// (`small`, s) whatever it takes, from there on as often as is asked for. Friction that is steep, as
 /// cohesion under small forces, has no balance in a step that resolves nothing; what is taken
@@ -175,6 +187,11 @@ void takeStep(Fall& fall, double h, StepKind kind, double small)
     lasting ? body.mechanicalEnergy(fall.parameters.gravity) + body.springEnergy : 0.0;
 
   StepOutcome outcome;
+  const auto again = [&]
+  {
+    body.state = body.before;
+    body.contacts = body.contactsBefore;
+  };
   for (int cut = 0;;)
   {
     const bool last = cut >= fall.parameters.maxCuts;
@@ -193,11 +210,23 @@ void takeStep(Fall& fall, double h, StepKind kind, double small)
       dampedIn(outcome, energyBefore, body, fall.parameters.gravity) <
         -kGainOfLag * body.block.mass() * fall.parameters.gravity * body.block.radius())
     {
-      body.state = body.before;
-      body.contacts = body.contactsBefore;
+      again();
       request.acceleration.setZero();
       request.spinAcceleration.setZero();
       continue;
+    }
+    // Features that are to meet beside where they are now, as over a ridge, are no contact yet.
+    if (lasting && request.duration > small)
+    {
+      body.placed.move(body.block, body.state);
+      if (passed(body.placed, fall.ground.patch(), fall.ground.candidates(), looseOverlap(body),
+            body.contacts))
+      {
+        ++summary.cutSteps;
+        again();
+        request.duration *= 0.5;
+        continue;
+      }
     }
     break;
   }
@@ -347,15 +376,7 @@ void findContacts(Fall& fall, const CandidatePairs& candidates, double reach, do
 void guardPenetrations(Fall& fall, const CandidatePairs& candidates)
 {
   RockBody& body = fall.body;
-  // A vertex that carries may be pressed in, and its neighbourhood with it; anything deeper slipped
-  // through.
-  double pressed = 0.0;
-  for (const Contact& c : body.contacts)
-  {
-    pressed = std::max(pressed, std::min(-c.gap(), -c.distance)); // by force, and by place
-  }
-  guardPenetration(body.placed, fall.ground.patch(), candidates,
-    kLooseOverlap * body.block.radius() + 2.0 * pressed, body.contacts);
+  guardPenetration(body.placed, fall.ground.patch(), candidates, looseOverlap(body), body.contacts);
 }
 
 void setNewSprings(Fall& fall, double h)
