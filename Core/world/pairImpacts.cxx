@@ -1,9 +1,26 @@
 #include "world/pairImpacts.h"
 
+#include "rock/restitution.h"
+
 #include <algorithm>
 
 namespace rockfall
 {
+
+namespace
+{
+
+/// Whether it is one to either of the two, as on the slope: what rattles in a heap is none.
+bool isImpactOf(const WorldState& world, const RockPair& pair)
+{
+  const RockPair::Impact& impact = pair.impact;
+  const RockBody &a = world.rocks[pair.first].body(), &b = world.rocks[pair.second].body();
+  return isImpact(impact.approach, std::min(impact.before[0].norm(), impact.before[1].norm()),
+    std::min(a.restingSpeed, b.restingSpeed), world.parameters.gravity,
+    std::min(a.block.radius(), b.block.radius()));
+}
+
+} // namespace
 
 void beginPairImpact(
   RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point)
@@ -57,9 +74,10 @@ void finishPairImpact(WorldState& world, RockPair& pair, bool over)
   pair.strikes = false;
   const double size = impact.impulse.norm();
   const double held = over ? 0.0 : springEnergyOf(pair.contacts);
-  const double loss = size > 0.0 ? impact.loss - held : 0.0;
+  const bool noted = size > 0.0 && isImpactOf(world, pair);
+  const double loss = noted ? impact.loss - held : 0.0;
   pair.lastingLoss += impact.loss - loss; // springs that had been compressed before, or are now
-  if (size <= 0.0)
+  if (!noted)
   {
     return;
   }

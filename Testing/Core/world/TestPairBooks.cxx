@@ -100,9 +100,10 @@ TEST(PairBooks, EveryJouleIsOfAnImpactOrOfLastingContact)
     const Books books = booksOf(pile.fall->run());
     ASSERT_GT(books.given, 1e5);
     EXPECT_NEAR(books.impacts + books.lasting, books.given, 1e-9 * books.given) << e;
-    // Cascading rocks hit each other far more than they rub: 0.2 to 2 % here, and up to 12 % when
-    // strikes that came through rocks in touch were no impacts.
-    EXPECT_LT(books.lasting, 0.03 * books.given) << e;
+    // Cascading rocks hit each other far more than they rub: 0.3 to 3 % here, and up to 12 % when
+    // strikes that came through rocks in touch were no impacts. Without a rebound many are slower
+    // than from a drop of r/20, which is no impact: up to 5.4 % of ten falls.
+    EXPECT_LT(books.lasting, (e == 0.0 ? 0.06 : 0.03) * books.given) << e;
     EXPECT_GT(books.lasting, 0.0);
   }
 }
