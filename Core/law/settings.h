@@ -393,8 +393,8 @@ inline constexpr double kLongestSide = 200.0;
 inline constexpr double kCrestTolerance = 0.05;
 /// Longest mitre in widths; a longer one folds.
 inline constexpr double kLongestMitre = 5.0;
-/// Depth of scars down to which the sides of walls go on, m.
-inline constexpr double kScarBesideWall = 2.0;
+/// Depth below its feet to which an embankment goes on upright where the ground has scars, m.
+inline constexpr double kScarBesideWall = 4.0;
 /// Deviation of the faces of a side in a bend with one common foot, share of its slope.
 inline constexpr double kFanTolerance = 0.5;
 /// Depth of a stem under the ground, m, and per metre of its diameter.

@@ -1,7 +1,9 @@
-// The mesh of an embankment: stations along its axis, and five strings of nodes along them: a foot,
-// an edge of the crest, the axis, the other edge and the other foot, with two triangles per piece
-// between two strings and an upright end on either side. On the inner side of a bend the strings of
-// edge and foot are shorter than the axis: the stations there have one node of them in common.
+// The mesh of an embankment: stations along its axis, and seven strings of nodes along them: the
+// lower end of a skirt, a foot, an edge of the crest, the axis, and the other edge, foot and skirt,
+// with two triangles per piece between two strings and an upright end on either side. On the inner
+// side of a bend the strings of edge and foot are shorter than the axis: the stations there have one
+// node of them in common. Skirts keep rocks in scars beside the feet out: going on as gentle as they
+// are, the sides would spread too far. On ground that does not yield there are none.
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
@@ -40,19 +42,17 @@ using Bunches = std::vector<Bunch>;
 class Builder
 {
 public:
+  /// Nodes of a station: lower end of a skirt, foot, edge of the crest, its middle, and back.
+  static constexpr int kStrings = 7, kCrest = 3;
+
   Builder(const Embankment& embankment, const Terrain& terrain)
     : it_(embankment)
     , terrain_(terrain)
+    , margin_(kFootDepth + terrain.roughnessDepth())
+    , skirt_(terrain.yields() ? kScarBesideWall : 0.0)
   {
     this->placeStations();
     this->chooseSides();
-    const double foot = kFootDepth + terrain.roughnessDepth();
-    for (int side = 0; side < 2; ++side)
-    {
-      // A wall beside a scar is met down to the bottom of it; gentler sides would spread too far.
-      const bool wall = slope_[side] < kSteepestScar;
-      margin_[side] = foot + (wall && terrain.yields() ? kScarBesideWall : 0.0);
-    }
     for (std::size_t i = 0; i + 1 < stations_.size(); ++i)
     {
       along_.push_back((stations_[i + 1].place - stations_[i].place).normalized());
@@ -67,7 +67,7 @@ public:
   {
     const std::size_t firstTriangle = mesh.triangles.size();
     const int count = int(stations_.size());
-    std::array<std::vector<int>, 5> strings; // nodes by station
+    std::array<std::vector<int>, kStrings> strings; // nodes by station
     const auto node = [&](const Vec3& p)
     {
       mesh.nodes.emplace_back();
@@ -76,19 +76,26 @@ public:
     };
     for (int side = 0; side < 2; ++side)
     {
-      for (const bool foot : { false, true })
+      const auto insert = [&](int string, const Bunch& b, int number)
       {
-        std::vector<int>& string = strings[side == 0 ? (foot ? 0 : 1) : (foot ? 4 : 3)];
-        for (const Bunch& b : foot ? feet_[side] : edges_[side])
-        {
-          string.insert(string.end(), std::size_t(b.last - b.first) + 1,
-            node(this->at(b, side, foot ? b.depth : 0.0)));
-        }
+        std::vector<int>& nodes = strings[side == 0 ? string : kStrings - 1 - string];
+        nodes.insert(nodes.end(), std::size_t(b.last - b.first) + 1, number);
+      };
+      for (const Bunch& b : edges_[side])
+      {
+        insert(2, b, node(this->at(b, side, 0.0)));
+      }
+      for (const Bunch& b : feet_[side])
+      {
+        const Vec3 foot = this->at(b, side, b.depth);
+        const int above = node(foot);
+        insert(1, b, above);
+        insert(0, b, skirt_ > 0.0 ? node(foot - skirt_ * Vec3::UnitZ()) : above);
       }
     }
     for (const Station& s : stations_)
     {
-      strings[2].push_back(node(Vec3(s.place.x(), s.place.y(), s.crest)));
+      strings[kCrest].push_back(node(Vec3(s.place.x(), s.place.y(), s.crest)));
     }
     const auto add = [&](int a, int b, int c)
     {
@@ -100,22 +107,20 @@ public:
     };
     for (int i = 0; i + 1 < count; ++i)
     {
-      for (int k = 0; k < 4; ++k)
+      for (int k = 0; k + 1 < kStrings; ++k)
       {
         const auto &left = strings[k], &right = strings[k + 1];
         add(left[i], right[i], right[i + 1]);
         add(left[i], right[i + 1], left[i + 1]);
       }
     }
-    for (int k = 0; k < 4; ++k)
+    // From the middle of the crest: an edge down to its skirt, the other skirt up to its edge.
+    constexpr std::array round = { 2, 1, 0, 6, 5, 4 };
+    for (std::size_t k = 0; k + 1 < round.size(); ++k)
     {
-      if (k != 2)
-      {
-        // From the middle of the crest: an edge, both feet, the other edge.
-        const int from = k == 0 ? 1 : k == 1 ? 0 : 4, to = k == 0 ? 0 : k == 1 ? 4 : 3;
-        add(strings[2].front(), strings[from].front(), strings[to].front());
-        add(strings[2].back(), strings[to].back(), strings[from].back());
-      }
+      const auto &from = strings[std::size_t(round[k])], &to = strings[std::size_t(round[k + 1])];
+      add(strings[kCrest].front(), from.front(), to.front());
+      add(strings[kCrest].back(), to.back(), from.back());
     }
     mesh.connect(firstTriangle);
     for (std::size_t k = firstTriangle; k < mesh.triangles.size(); ++k)
@@ -410,9 +415,9 @@ private:
       {
         const Vec3 p = place(down);
         const double ground = this->groundAt(p.head<2>());
-        if (p.z() <= ground - margin_[side])
+        if (p.z() <= ground - margin_)
         {
-          deepest = std::max(deepest, down + margin_[side]);
+          deepest = std::max(deepest, down + margin_);
           break;
         }
         if (std::isnan(ground))
@@ -436,7 +441,8 @@ private:
 
   const Embankment& it_;
   const Terrain& terrain_;
-  std::array<double, 2> margin_{}; ///< By how much the foot of each side is under the ground, m.
+  double margin_; ///< By how much the feet are under the ground, m.
+  double skirt_;  ///< Height of what goes on upright below them, m.
   bool buried_ = true;
   double slope_[2] = { 0.0, 0.0 }; ///< Left and right.
   std::vector<Station> stations_;

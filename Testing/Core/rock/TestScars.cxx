@@ -5,6 +5,7 @@
 
 #include "../../overlap.h"
 #include "geometry/shapes.h"
+#include "law/settings.h"
 #include "run/stateHash.h"
 
 #include <gtest/gtest.h>
@@ -113,6 +114,72 @@ TEST(Scars, AWallOfItsOwnMaterialDoesNotSinkWithThem)
       deepest = std::max(deepest,
         deepestOverlap(
           2, [&](int i) -> const Block& { return i == 0 ? block : wall; },
+          [&](int i) { return i == 0 ? state : standing; }));
+    }
+    EXPECT_LT(deepest, 0.02 * edge) << k;
+    for (const ImpactEvent& impact : t.impacts)
+    {
+      deepestScar = std::max(deepestScar, impact.scarDepth);
+    }
+    EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-3 * t.summary.energy.released) << k;
+  }
+  EXPECT_GT(deepestScar, 0.3);
+}
+
+// A rock in a scar beside its foot is not in it, however gentle its side is.
+TEST(Scars, ADamOfItsOwnMaterialIsMetBelowItsFoot)
+{
+  const double height = 3.0, width = 1.0, slope = 2.0 / 3.0;
+  Embankment e = dam(height, width, slope);
+  e.material = 1;
+  Structures built = only(e);
+  built.materials = { material(0.3, 30.0) };
+  Terrain terrain = level(softGround());
+  terrain.setStructures(built);
+  // The dam and what is under it: upright below its feet.
+  const double foot = -kFootDepth, half = 0.5 * width + slope * (height - foot);
+  std::vector<Vec3> corners;
+  for (const double x : { -30.0, 30.0 })
+  {
+    for (const double side : { -1.0, 1.0 })
+    {
+      corners.emplace_back(x, 0.5 * width * side, height);
+      corners.emplace_back(x, half * side, foot);
+      corners.emplace_back(x, half * side, foot - 3.0);
+    }
+  }
+  const Block solid(Polyhedron::convexHull(corners).centred(), 2500.0, 1e10, 0.25);
+  double top = 0.0;
+  for (const Vec3& corner : solid.shape().vertices())
+  {
+    top = std::max(top, corner.z());
+  }
+  BlockState standing;
+  standing.position = Vec3(50.0, 50.0, 100.0 + height - top);
+  double deepestScar = 0.0;
+  for (int k = 0; k < 16; ++k)
+  {
+    Rock rock;
+    rock.shape = makeShape(k % 2 ? Shape::Eota111 : Shape::Cube, k < 8 ? 30.0 : 5.0);
+    const Block block = blockOf(rock);
+    const double edge = std::cbrt(k < 8 ? 30.0 : 5.0);
+    rock.position =
+      Vec3(50.0 + 0.3 * k, 50.0 - half - (0.9 + 0.2 * (k % 4)) * edge, 100.0 + 1.2 * edge);
+    rock.velocity = Vec3(0.5, 3.0 + 2.0 * (k % 4), -9.0);
+    rock.orientation = Quat(Eigen::AngleAxisd(0.15 * (k % 4), Vec3(0.3, 0.7, 0.2).normalized()));
+    SimulationParameters p;
+    p.endTime = 4.0;
+    p.outputInterval = 0.02;
+    const Trajectory t = simulate(terrain, rock, p);
+    double deepest = 0.0;
+    for (const Sample& s : t.samples)
+    {
+      BlockState state;
+      state.position = s.position;
+      state.orientation = s.orientation;
+      deepest = std::max(deepest,
+        deepestOverlap(
+          2, [&](int i) -> const Block& { return i == 0 ? block : solid; },
           [&](int i) { return i == 0 ? state : standing; }));
     }
     EXPECT_LT(deepest, 0.02 * edge) << k;
