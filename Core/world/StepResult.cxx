@@ -35,6 +35,7 @@ void StepResult::apply()
     }
   }
   this->splitOffSingles();
+  StepTrees(world_, island_, work_).forgetSingles();
   forEach(work_.touching.size(), kPairGrain, [this](std::size_t t) { this->applyToPair(t); });
   this->applyAdded();
   this->finishImpacts();

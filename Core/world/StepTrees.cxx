@@ -257,6 +257,12 @@ bool StepTrees::look(double h)
   return any;
 }
 
+void StepTrees::forgetSingles()
+{
+  std::erase_if(work_.stems,
+    [&](const Stem& stem) { return work_.alone[std::size_t(this->rockOf(stem).place)] != 0; });
+}
+
 bool StepTrees::isOfAnother(const Stem& stem) const
 {
   const auto falls = [&](const Stem& s)

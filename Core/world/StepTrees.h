@@ -33,6 +33,9 @@ public:
 
   void stand();        ///< All of them again.
   bool look(double h); ///< Whether any was let go, or set in again, in a step of `h` (s).
+  /// Forgets those of rocks that take the step by themselves (IslandWork::alone): what others drove
+  /// them into did not happen, and their own step asks the trees.
+  void forgetSingles();
   /// Breaks trees that could not hold a rock in the step that it has gone.
   void fell(std::size_t member);
 
