@@ -262,12 +262,17 @@ const CandidatePairs& EndDetection::candidatesOf(std::size_t m)
 {
   FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
   const std::size_t place = std::size_t(rock.place);
-  const IslandWork::Motion& motion = work_.motions[place];
   rock.body().placed.placeVertices();
   rock.end.placeVertices();
   Fall& fall = rock.fall();
-  return fall.ground.candidatesAt(fall.body, fall.structures, work_.solver.end(place),
-    motion.displacement.norm() + motion.rimTravel);
+  return fall.ground.candidatesAt(
+    fall.body, fall.structures, work_.solver.end(place), this->cameFrom(rock).way);
+}
+
+CameFrom EndDetection::cameFrom(const FallingRock& rock) const
+{
+  const IslandWork::Motion& motion = work_.motions[std::size_t(rock.place)];
+  return { rock.body().state.position, motion.displacement.norm() + motion.rimTravel };
 }
 
 std::size_t EndDetection::touchesOnSlope(
@@ -298,7 +303,7 @@ std::size_t EndDetection::touchesOnSlope(
   }
   const std::size_t known = touches.size();
   guardPenetration(rock.end, fall.ground.patch(), near,
-    kLooseOverlap * rock.body().block.radius() + 2.0 * pressed, touches);
+    kLooseOverlap * rock.body().block.radius() + 2.0 * pressed, this->cameFrom(rock), touches);
   // Trees that nobody reckoned with are met in the next step.
   const auto behind = touches.begin() + std::ptrdiff_t(known);
   touches.erase(
@@ -320,7 +325,7 @@ bool EndDetection::isMissedOnSlope(std::size_t m)
   const FallingRock& member = world_.rocks[rock];
   const CandidatePairs& near = this->candidatesOf(m);
   const double loose = kLooseOverlap * member.body().block.radius();
-  if (!overlaps(member.end, member.fall().ground.patch(), near, loose))
+  if (!overlaps(member.end, member.fall().ground.patch(), near, loose, this->cameFrom(member)))
   {
     return false;
   }

@@ -8,6 +8,7 @@
 /// pushed by others on the way may come to touch elsewhere, and would be found as deep in each
 /// other or in the slope as they go in a step.
 
+#include "contact/ground/features.h"
 #include "world/IslandWork.h"
 
 namespace rockfall
@@ -38,6 +39,7 @@ private:
   double detectOnSlope();
   bool isMissedOnSlope(std::size_t member);
   const CandidatePairs& candidatesOf(std::size_t member);
+  CameFrom cameFrom(const FallingRock& rock) const;
   /// Contacts of a rock with the slope there: those that are reckoned with, then those that are
   /// not. Returns how many the former are.
   std::size_t touchesOnSlope(

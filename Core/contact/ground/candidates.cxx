@@ -114,7 +114,7 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     }
     else if ((projectsInside(patch, pair.patch, p, 0.0, 0.0) ||
                (pair.patch < patch.slopeTriangles && isStraightOver(patch, t, p))) &&
-      cameThrough(rock, patch, pair.patch, p, over))
+      cameThrough(rock.position(), patch, pair.patch, p, over))
     {
       // Under the bottom of a valley it is beside both walls, seen square to them.
       return 0.0;

@@ -308,7 +308,7 @@ private:
         const SurfacePatch::Triangle& t = patch_.triangles[i];
         if (inVertexCone(rock_, vertex, t.normal, 0.0) &&
           projectsInside(patch_, i, p, 0.0, 1e-9 * rock_.block().radius()) &&
-          cameThrough(rock_, patch_, i, p, t.normal.dot(p) - t.offset))
+          cameThrough(rock_.position(), patch_, i, p, t.normal.dot(p) - t.offset))
         {
           this->offer({ ContactKind::VertexFace, vertex, i, t.key, t.cfe, t.normal, p,
             t.normal.dot(p) - t.offset, 0.0 });

@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace rockfall
@@ -47,25 +46,6 @@ void reopen(Contact& c)
   c.offset = c.distance;
   c.slip.setZero();
   c.normalForce = c.shearForce = 0.0;
-}
-
-/// How far all of an edge is over one side of a ridge, if it is beyond reach of it, as most
-/// candidates are, m; else 0.
-double overSide(
-  const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach)
-{
-  const std::array<int, 2>& ends = rock.block().shape().edges()[edge].vertices;
-  const Vec3 &p = rock.vertices()[ends[0]], &q = rock.vertices()[ends[1]];
-  for (int i : patch.ridges[ridge].triangles)
-  {
-    const SurfacePatch::Triangle& side = patch.triangles[i];
-    const double a = side.normal.dot(p), b = side.normal.dot(q), least = reach + side.offset;
-    if (a > least && b > least)
-    {
-      return std::min(a, b) - side.offset;
-    }
-  }
-  return 0.0;
 }
 
 /// How far a point is beside a triangle, seen square to it, if by more than `least`, m; else 0.

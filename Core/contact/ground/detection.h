@@ -5,6 +5,7 @@
 
 #include "contact/Contact.h"
 #include "contact/ground/candidates.h"
+#include "contact/ground/features.h"
 
 #include <vector>
 
@@ -27,18 +28,21 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
 /// The net under the entrance rules: every candidate vertex of the rock that is under the slope by
 /// more than `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no
 /// force at the overlap it is found with and resists any further one, unless it has a contact
-/// already.
-void guardPenetration(const PlacedBlock& rock, const SurfacePatch& patch,
-  const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts);
+/// already. `from`: where the middle of the rock was when the step began, as it may have gone through
+/// an obstacle within it; if it has gone a way, edges that came across a ridge on it get one, too.
 
-/// Whether any vertex or peak is that deep.
+void guardPenetration(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double allowed, const CameFrom& from,
+  std::vector<Contact>& contacts);
+
+/// Whether any of them is that deep.
 bool overlaps(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
-  double allowed);
+  double allowed, const CameFrom& from);
 
 /// Whether a vertex, peak or edge of the candidates is that deep in what none of the contacts holds,
 /// edges deeper than any of these by so much: a step has gone past where they would have met.
 bool passed(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
-  double allowed, std::vector<Contact>& contacts);
+  double allowed, const CameFrom& from, std::vector<Contact>& contacts);
 
 /// Adds an entrance unless the contacts that are already there stand for it.
 void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Contact>& contacts);

@@ -57,8 +57,8 @@ bool isStraightOver(const SurfacePatch& patch, const SurfacePatch::Triangle& t, 
   return true;
 }
 
-bool cameThrough(const PlacedBlock& rock, const SurfacePatch& patch, int triangle,
-  const Vec3& point, double distance)
+bool cameThrough(
+  const Vec3& from, const SurfacePatch& patch, int triangle, const Vec3& point, double distance)
 {
   const int walls = patch.slopeTriangles + patch.wallTriangles;
   if (distance >= 0.0)
@@ -69,7 +69,7 @@ bool cameThrough(const PlacedBlock& rock, const SurfacePatch& patch, int triangl
   {
     // A rock before a thin obstacle is behind the far side of it, too.
     const SurfacePatch::Triangle& t = patch.triangles[triangle];
-    return t.normal.dot(rock.position()) > t.offset;
+    return t.normal.dot(from) > t.offset;
   }
   if (patch.wallTriangles == 0)
   {
@@ -189,7 +189,7 @@ std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const Sur
     return std::nullopt;
   }
   if (!inVertexCone(rock, vertex, t.normal, kConeSlack + turn) ||
-    !cameThrough(rock, patch, triangle, p, distance))
+    !cameThrough(rock.position(), patch, triangle, p, distance))
   {
     return std::nullopt;
   }
@@ -283,8 +283,31 @@ bool closestOnLines(
   return true;
 }
 
+double overSide(
+  const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach)
+{
+  const std::array<int, 2>& ends = rock.block().shape().edges()[edge].vertices;
+  const Vec3 &p = rock.vertices()[ends[0]], &q = rock.vertices()[ends[1]];
+  for (int i : patch.ridges[ridge].triangles)
+  {
+    const SurfacePatch::Triangle& side = patch.triangles[i];
+    const double a = side.normal.dot(p), b = side.normal.dot(q), least = reach + side.offset;
+    if (a > least && b > least)
+    {
+      return std::min(a, b) - side.offset;
+    }
+  }
+  return 0.0;
+}
+
 std::optional<Contact> edgeEdge(
   const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach)
+{
+  return edgeEdge(rock, edge, patch, ridge, reach, { rock.position() });
+}
+
+std::optional<Contact> edgeEdge(const PlacedBlock& rock, int edge, const SurfacePatch& patch,
+  int ridge, double reach, const CameFrom& from)
 {
   const Polyhedron& shape = rock.block().shape();
   const Polyhedron::Edge& e = shape.edges()[edge];
@@ -307,8 +330,8 @@ std::optional<Contact> edgeEdge(
   }
   const Vec3 onRock = p + s * u;
   const double distance = n.dot(onRock - (q + t * w));
-  const double depth = deepestEntrance(rock.block());
-  if (distance > reach || distance < -depth)
+  const double depth = std::max(from.way, deepestEntrance(rock.block()));
+  if (distance > reach || distance < -depth || (distance < 0.0 && n.dot(from.position - q) <= 0.0))
   {
     return std::nullopt;
   }

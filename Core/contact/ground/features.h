@@ -26,10 +26,10 @@ bool isStraightOver(
 /// Whether a point `distance` (m) over the plane of a triangle that it projects inside got there
 /// through this triangle. Where the ground ends in walls, that is so for a point in the ground that
 /// has no shorter way out through one of them, or, of a wall, through the slope. Of an obstacle it
-/// is where the middle of the rock is outside: before a thin one it is behind the far side, too.
-/// Anywhere else it is taken to be.
-bool cameThrough(const PlacedBlock& rock, const SurfacePatch& patch, int triangle,
-  const Vec3& point, double distance);
+/// is where the middle of the rock came `from` outside (m): before a thin one it is behind the far
+/// side, too. Anywhere else it is taken to be.
+bool cameThrough(
+  const Vec3& from, const SurfacePatch& patch, int triangle, const Vec3& point, double distance);
 /// The same of an edge of the rock `distance` (m) over a ridge that it crosses: an upright one,
 /// between walls, has it beside it unless a face of the rock is over the top, or less deep under
 /// it.
@@ -44,7 +44,22 @@ std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const Sur
 std::optional<Contact> faceVertex(
   const PlacedBlock& rock, int face, const SurfacePatch& patch, int node, double reach);
 
-/// Entrance of an edge of the rock on a ridge.
+/// How a rock came to where it is looked at.
+struct CameFrom
+{
+  Vec3 position;    ///< Of its middle before, m.
+  double way = 0.0; ///< That any of its points may have gone since, m.
+};
+
+/// How far all of an edge is over one side of a ridge, if it is beyond reach of it, as most
+/// candidates are, m; else 0.
+double overSide(
+  const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach);
+
+/// Entrance of an edge of the rock on a ridge, if the middle of the rock came from outside of both.
+std::optional<Contact> edgeEdge(const PlacedBlock& rock, int edge, const SurfacePatch& patch,
+  int ridge, double reach, const CameFrom& from);
+/// The same of a rock that stands where it is.
 std::optional<Contact> edgeEdge(
   const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach);
 

@@ -75,11 +75,41 @@ double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
 namespace
 {
 
-/// visit(kind, feature of the rock, of the patch, distance) of each candidate vertex and peak that
-/// is too deep, until it returns false. Returns whether it never did.
+Contact contactOf(const PlacedBlock& rock, int vertex, const SurfacePatch::Triangle& t,
+  int triangle, double distance)
+{
+  Contact c;
+  c.kind = ContactKind::VertexFace;
+  c.rockFeature = vertex;
+  c.patchFeature = triangle;
+  c.surfaceFeature = t.key;
+  c.cfe = t.cfe;
+  c.normal = t.normal;
+  c.point = rock.vertices()[vertex];
+  c.distance = distance;
+  return c;
+}
+
+Contact contactOf(
+  const PlacedBlock& rock, int face, const SurfacePatch::Node& q, int node, double distance)
+{
+  Contact c;
+  c.kind = ContactKind::FaceVertex;
+  c.rockFeature = face;
+  c.patchFeature = node;
+  c.surfaceFeature = q.key;
+  c.cfe = q.cfe;
+  c.normal = -rock.normal(face);
+  c.point = q.position;
+  c.distance = distance;
+  return c;
+}
+
+/// visit(contact) of each candidate that is too deep, until it returns false. Returns whether it
+/// never did.
 template <class Visit>
 bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
-  const CandidatePairs& candidates, double allowed, Visit&& visit)
+  const CandidatePairs& candidates, double allowed, const CameFrom& from, Visit&& visit)
 {
   if (isRound(rock))
   {
@@ -100,24 +130,46 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
       (pair.patch < patch.slopeTriangles ? isStraightOver(patch, t, p)
                                          : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&
             inVertexCone(rock, pair.rock, t.normal, kConeSlack)) &&
-      cameThrough(rock, patch, pair.patch, p, distance) &&
-      !visit(ContactKind::VertexFace, pair.rock, pair.patch, distance))
+      cameThrough(from.position, patch, pair.patch, p, distance) &&
+      !visit(contactOf(rock, pair.rock, t, pair.patch, distance)))
     {
       return false;
     }
   }
   for (int node : candidates.peaks)
   {
-    const Vec3& q = patch.nodes[node].position;
-    const int face = rock.outermostFace(q, -allowed);
+    const SurfacePatch::Node& q = patch.nodes[node];
+    const int face = rock.outermostFace(q.position, -allowed);
     if (face < 0)
     {
       continue;
     }
-    const double distance = rock.faceDistance(face, q);
+    const double distance = rock.faceDistance(face, q.position);
     // A face that looks up is no way out of the ground.
     if (distance < -allowed && (node >= patch.slopeNodes || rock.normal(face).z() < 0.0) &&
-      !visit(ContactKind::FaceVertex, face, node, distance))
+      !visit(contactOf(rock, face, q, node, distance)))
+    {
+      return false;
+    }
+  }
+  if (from.way <= 0.0)
+  {
+    return true; // edges have been looked at where it stands
+  }
+  for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
+  {
+    if (pair.over > travelled)
+    {
+      continue;
+    }
+    const double over = overSide(rock, pair.rock, patch, pair.patch, 0.0);
+    pair.over = travelled + over;
+    if (over > 0.0)
+    {
+      continue;
+    }
+    const auto c = edgeEdge(rock, pair.rock, patch, pair.patch, -allowed, from);
+    if (c && !visit(*c))
     {
       return false;
     }
@@ -128,66 +180,50 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
 } // namespace
 
 void guardPenetration(const PlacedBlock& rock, const SurfacePatch& patch,
-  const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts)
+  const CandidatePairs& candidates, double allowed, const CameFrom& from,
+  std::vector<Contact>& contacts)
 {
-  const auto add = [&](ContactKind kind, int onRock, int onPatch, double distance)
+  const auto isKnownBy = [&](const Contact& c, const Contact& o)
   {
-    Contact c;
-    c.kind = kind;
-    c.rockFeature = onRock;
-    c.patchFeature = onPatch;
-    c.distance = distance;
-    c.offset = distance;
-    if (kind == ContactKind::VertexFace)
+    const bool same = o.kind == c.kind && o.surfaceFeature == c.surfaceFeature;
+    switch (c.kind)
     {
-      c.cfe = patch.triangles[onPatch].cfe;
-      c.surfaceFeature = patch.triangles[onPatch].key;
-      c.normal = patch.triangles[onPatch].normal;
-      c.point = rock.vertices()[onRock];
-    }
-    else
-    {
-      c.cfe = patch.nodes[onPatch].cfe;
-      c.surfaceFeature = patch.nodes[onPatch].key;
-      c.normal = -rock.normal(onRock);
-      c.point = patch.nodes[onPatch].position;
-    }
-    const bool known = std::any_of(contacts.begin(), contacts.end(),
-      [&](const Contact& o)
-      {
-        if (o.kind != c.kind || c.kind != ContactKind::VertexFace)
-        {
-          return o.kind == c.kind && o.surfaceFeature == c.surfaceFeature;
-        }
+      case ContactKind::FaceVertex:
+        return same;
+      case ContactKind::EdgeEdge:
+        return same && o.rockFeature == c.rockFeature;
+      default:
         // The plane of a triangle is produced beyond a concave edge: a contact that lives on there
         // knows of no depth under the triangle that rises behind it.
-        return o.rockFeature == c.rockFeature &&
-          (o.surfaceFeature == c.surfaceFeature || o.distance <= c.distance + allowed);
-      });
-    if (!known)
+        return o.kind == c.kind && o.rockFeature == c.rockFeature &&
+          (same || o.distance <= c.distance + allowed);
+    }
+  };
+  const auto add = [&](Contact c)
+  {
+    c.offset = c.distance;
+    if (std::none_of(
+          contacts.begin(), contacts.end(), [&](const Contact& o) { return isKnownBy(c, o); }))
     {
       contacts.push_back(c);
     }
+    return true;
   };
-  visitOverlaps(rock, patch, candidates, allowed,
-    [&](ContactKind kind, int onRock, int onPatch, double distance)
-    {
-      add(kind, onRock, onPatch, distance);
-      return true;
-    });
+  visitOverlaps(rock, patch, candidates, allowed, from, add);
 }
 
 bool overlaps(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
-  double allowed)
+  double allowed, const CameFrom& from)
 {
-  return !visitOverlaps(rock, patch, candidates, allowed, [](auto&&...) { return false; });
+  return !visitOverlaps(
+    rock, patch, candidates, allowed, from, [](const Contact&) { return false; });
 }
 
 bool passed(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
-  double allowed, std::vector<Contact>& contacts)
+  double allowed, const CameFrom& from, std::vector<Contact>& contacts)
 {
   const std::size_t held = contacts.size();
-  guardPenetration(rock, patch, candidates, allowed, contacts);
+  guardPenetration(rock, patch, candidates, allowed, { from.position }, contacts);
   const bool more = contacts.size() > held;
   contacts.resize(held);
   if (more || isRound(rock))
@@ -204,7 +240,7 @@ bool passed(const PlacedBlock& rock, const SurfacePatch& patch, const CandidateP
     [&](const CandidatePairs::Pair& pair)
     {
       return pair.over <= travelled &&
-        edgeEdge(rock, pair.rock, patch, pair.patch, deepest - allowed);
+        edgeEdge(rock, pair.rock, patch, pair.patch, deepest - allowed, from);
     });
 }
 

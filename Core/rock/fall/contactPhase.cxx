@@ -150,6 +150,15 @@ double looseOverlap(const RockBody& body)
   return kLooseOverlap * body.block.radius() + 2.0 * pressed;
 }
 
+/// That any point of the rock has gone in the step, at most, m.
+double wayOf(const RockBody& body)
+{
+  const BlockState &from = body.before, &to = body.state;
+  const double r = body.block.radius();
+  return (to.position - from.position).norm() + rimTravel(from.orientation, to.orientation, r) +
+    r * (to.strain - from.strain).norm();
+}
+
 /// One step of contact, halved until open–close settles: as far as steps that resolve an impact
 /// (`small`, s) whatever it takes, from there on as often as is asked for. Friction that is steep, as
 /// cohesion under small forces, has no balance in a step that resolves nothing; what is taken
@@ -220,7 +229,7 @@ void takeStep(Fall& fall, double h, StepKind kind, double small)
     {
       body.placed.move(body.block, body.state);
       if (passed(body.placed, fall.ground.patch(), fall.ground.candidates(), looseOverlap(body),
-            body.contacts))
+            { body.before.position, wayOf(body) }, body.contacts))
       {
         ++summary.cutSteps;
         again();
@@ -376,7 +385,8 @@ void findContacts(Fall& fall, const CandidatePairs& candidates, double reach, do
 void guardPenetrations(Fall& fall, const CandidatePairs& candidates)
 {
   RockBody& body = fall.body;
-  guardPenetration(body.placed, fall.ground.patch(), candidates, looseOverlap(body), body.contacts);
+  guardPenetration(body.placed, fall.ground.patch(), candidates, looseOverlap(body),
+    { body.state.position }, body.contacts);
 }
 
 void setNewSprings(Fall& fall, double h)

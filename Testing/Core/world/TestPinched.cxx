@@ -40,6 +40,27 @@ double deepest(const Trajectory& t)
   return most;
 }
 
+/// Level ground and an upright wall of 6 m with its face at this x, so thick (m).
+Pile levelWithWall(double face, double width, double timeStep)
+{
+  Pile pile;
+  pile.ground = makeSlope(
+    41, 5.0, [](double, double) { return 0.0; }, material(0.5, 20.0));
+  Embankment wall;
+  wall.points = { { face + 0.5 * width, 20.0 }, { face + 0.5 * width, 180.0 } };
+  wall.height = 6.0;
+  wall.crestWidth = width;
+  wall.mountainSlope = wall.valleySlope = 0.0;
+  Structures structures;
+  structures.embankments = { wall };
+  pile.ground.setStructures(structures);
+  pile.parameters.timeStep = timeStep;
+  pile.parameters.endTime = 0.8;
+  pile.parameters.outputInterval = 0.01;
+  pile.parameters.rockRestitution = 0.3;
+  return pile;
+}
+
 } // namespace
 
 // An icosahedron of 75 t straight down on one so many times smaller that lies on the ground.
@@ -237,21 +258,7 @@ TEST(Pinched, StoneBetweenABoulderAndAThinWallStaysBeforeIt)
   const auto runs = [](double width, double side, double boulder, double speed, double step)
   {
     constexpr double face = 100.0; // m, along x
-    Pile pile;
-    pile.ground = makeSlope(
-      41, 5.0, [](double, double) { return 0.0; }, material(0.5, 20.0));
-    Embankment wall;
-    wall.points = { { face + 0.5 * width, 20.0 }, { face + 0.5 * width, 180.0 } };
-    wall.height = 6.0;
-    wall.crestWidth = width;
-    wall.mountainSlope = wall.valleySlope = 0.0;
-    Structures structures;
-    structures.embankments = { wall };
-    pile.ground.setStructures(structures);
-    pile.parameters.timeStep = step;
-    pile.parameters.endTime = 0.8;
-    pile.parameters.outputInterval = 0.01;
-    pile.parameters.rockRestitution = 0.3;
+    Pile pile = levelWithWall(face, width, step);
     const double x = face - 0.05 - 0.5 * side;
     pile.rocks = { brick(Vec3(side, side, side), Vec3(x, 100.0, 0.5 * side + 0.001), 0),
       brick(Vec3(boulder, boulder, boulder),
@@ -278,6 +285,37 @@ TEST(Pinched, StoneBetweenABoulderAndAThinWallStaysBeforeIt)
             {
               EXPECT_LT(s.position.x() + 0.5 * side, 100.0 + 0.05 * side) << s.time;
             }
+          }
+        }
+      }
+    }
+  }
+}
+
+// A boulder drives a plate, thinner than its way within a step, flat against an upright wall.
+TEST(Pinched, PlateBetweenABoulderAndAWallDoesNotGoThrough)
+{
+  constexpr double face = 100.0; // m, along x
+  for (const double thickness : { 0.05, 0.1, 0.2 })
+  {
+    for (const double width : { 0.15, 0.3, 1.0 })
+    {
+      for (const double speed : { 15.0, 25.0 })
+      {
+        for (const double gap : { 0.02, 0.1, 0.3 })
+        {
+          SCOPED_TRACE(::testing::Message() << "plate " << thickness << " m, wall " << width
+                                            << " m, " << speed << " m/s, gap " << gap << " m");
+          Pile pile = levelWithWall(face, width, 0.005);
+          pile.rocks = { brick(Vec3(thickness, 1.0, 1.0),
+                           Vec3(face - gap - 0.5 * thickness, 100.0, 0.501), 0),
+            brick(Vec3(1.5, 1.5, 1.5), Vec3(face - gap - thickness - 0.9, 100.0, 0.76), 1) };
+          pile.rocks[1].velocity = Vec3(speed, 0.0, 0.0);
+          pile.make();
+          const std::vector<Trajectory> runs = pile.fall->run();
+          for (const Sample& s : runs.front().samples)
+          {
+            ASSERT_LT(s.position.x(), face + 0.02) << s.time;
           }
         }
       }
