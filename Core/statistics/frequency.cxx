@@ -61,18 +61,30 @@ bool FrequencyRange::differs() const
   return high_ > low_ * (1.0 + rounding);
 }
 
-std::vector<std::string> FrequencyRange::notes() const
+std::vector<std::string> FrequencyRange::notesOn(
+  const char* rocks, const char* numbers, const char* instead) const
 {
   if (!this->differs())
   {
     return {};
   }
-  return {
-    "Rocks that pass together differ in their frequencies" +
+  return { "Rocks that " + std::string(rocks) + " differ in their frequencies" +
     (low_ > 0.0 ? ", by up to " + numberText(high_ / low_, 3) + " times" : std::string()) +
-    ", but quantiles count each rock alike: rare rocks count too much in them, frequent ones too "
-    "little. Release amounts in proportion to frequencies, or read how often an energy is exceeded"
-  };
+    ", but " + numbers +
+    " count each rock alike: rare rocks count too much in them, frequent ones too little. Release "
+    "amounts in proportion to frequencies, or read how often " +
+    instead };
+}
+
+std::vector<std::string> FrequencyRange::notes() const
+{
+  return this->notesOn("pass together", "quantiles", "an energy is exceeded");
+}
+
+std::vector<std::string> FrequencyRange::notesOnShares() const
+{
+  return this->notesOn(
+    "are released", "shares at lines", "a rock passes in Barrier Design");
 }
 
 void FrequencySummarizer::add(const Passage& passage)

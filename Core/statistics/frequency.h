@@ -45,8 +45,13 @@ public:
   bool differs() const; ///< By more than rounding.
   /// The note where they differ, as quantiles of the sample count each rock alike; none else.
   std::vector<std::string> notes() const;
+  /// The same of all rocks released, of which the shares at lines are.
+  std::vector<std::string> notesOnShares() const;
 
 private:
+  std::vector<std::string> notesOn(
+    const char* rocks, const char* numbers, const char* instead) const;
+
   double low_ = std::numeric_limits<double>::infinity();
   double high_ = -std::numeric_limits<double>::infinity();
 };

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace rockfall
 {
@@ -85,12 +87,41 @@ void RockReleases::requireOneSource() const
 
 double RockReleases::weight(const Passage& of) const
 {
-  const auto found = rocks_.find({ of.rock, of.blockId });
-  if (found == rocks_.end() || !found->second.frequency)
+  const double known = this->weight(of.rock, of.blockId);
+  if (std::isnan(known))
   {
     throw DataError("Rock " + std::to_string(of.rock) + " has no Frequency");
   }
-  return weightOf(found->second);
+  return known;
+}
+
+double RockReleases::weight(int rock, std::int64_t blockId) const
+{
+  const auto found = rocks_.find({ rock, blockId });
+  return found == rocks_.end() || !found->second.frequency
+    ? std::numeric_limits<double>::quiet_NaN()
+    : weightOf(found->second);
+}
+
+FrequencyRange RockReleases::weights() const
+{
+  FrequencyRange range;
+  for (const auto& [rock, release] : rocks_)
+  {
+    range.add(this->weight(rock.first, rock.second));
+  }
+  return range;
+}
+
+RockRuns RockReleases::runs() const
+{
+  std::vector<std::pair<int, std::int64_t>> rocks;
+  rocks.reserve(rocks_.size());
+  for (const auto& [rock, release] : rocks_)
+  {
+    rocks.push_back(rock);
+  }
+  return RockRuns(std::move(rocks));
 }
 
 double RockReleases::largestWeight() const

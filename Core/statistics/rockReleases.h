@@ -3,6 +3,8 @@
 /// @file
 /// The rocks of a release: how often each was released, how rare it is and where it comes from.
 
+#include "statistics/copies.h"
+#include "statistics/frequency.h"
 #include "statistics/passages.h"
 
 #include <cstdint>
@@ -40,6 +42,10 @@ public:
   void requireOneSource() const;
   /// Of one trajectory, 1/a. Throws DataError for a rock whose frequency is not known.
   double weight(const Passage& of) const;
+  /// The same of a rock; NaN if its frequency is not known.
+  double weight(int rock, std::int64_t blockId) const;
+  FrequencyRange weights() const; ///< Of all rocks.
+  RockRuns runs() const;
   /// The largest weight of a rock, 1/a.
   double largestWeight() const;
 

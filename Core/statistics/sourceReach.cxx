@@ -11,12 +11,14 @@ namespace rockfall
 SourceReach::SourceReach(const RockReleases& releases)
 {
   releases.requireOneSource();
-  std::map<std::int64_t, std::size_t> numbers;
+  const RockRuns runs = releases.runs();
+  std::map<std::pair<int, std::int64_t>, std::size_t> numbers; // of a source of a run
   for (const auto& [rock, release] : releases.all())
   {
     if (release.source)
     {
-      const auto number = numbers.try_emplace(*release.source, numbers.size()).first->second;
+      const std::pair source(runs.of(rock.first, rock.second), *release.source);
+      const auto number = numbers.try_emplace(source, numbers.size()).first->second;
       sources_.resize(numbers.size());
       sources_[number].released += release.iterations;
       sourceOf_.emplace(rock, number);

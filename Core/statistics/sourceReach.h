@@ -14,7 +14,8 @@ namespace rockfall
 {
 
 /// Of the passages of one cell, the largest share over the sources: rocks of a source that came
-/// over all of its releases. Rocks of other sources change nothing.
+/// over all of its releases. Rocks of other sources change nothing, nor do those of another run,
+/// whose sources may have the same numbers.
 class SourceReach
 {
 public:

@@ -108,6 +108,26 @@ TEST(Frequency, RocksOfOneSampleThatDiffer)
   EXPECT_FALSE(differing({ passageOf(3, 0, 0, kJ), passageOf(4, 0, 4, kJ) }));
 }
 
+/// What a rock counts is its frequency over its releases: rocks as frequent as each other of ten
+/// iterations and of forty.
+TEST(Frequency, WeightsOfUnlikeReleases)
+{
+  RockReleases rocks;
+  rocks.add(0, 0, { .iterations = 10, .frequency = 0.5 });
+  rocks.add(0, 9, { .iterations = 40, .frequency = 0.5 });
+  EXPECT_EQ(rocks.weight(0, 9), 0.0125);
+  EXPECT_TRUE(std::isnan(rocks.weight(1, 0)));
+  rocks.add(1, 0, {}); // of no frequency that is known
+  EXPECT_TRUE(std::isnan(rocks.weight(1, 0)));
+  const std::vector<std::string> notes = rocks.weights().notesOnShares();
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].rfind("Rocks that are released differ in their frequencies, by up to 4 times, "
+                           "but shares at lines count each rock alike",
+              0),
+    0u)
+    << notes[0];
+}
+
 TEST(Frequency, OfCellsByHand)
 {
   const auto cells = cellsOf(passages(), swiss);
