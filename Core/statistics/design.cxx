@@ -152,9 +152,12 @@ std::vector<DesignLevel> designLevels(std::span<const DesignPassing> passings)
   return levels;
 }
 
-BarrierOutcome outcomeOf(std::span<const DesignPassing> passings, double height, double capacity)
+BarrierOutcome outcomeOf(
+  std::span<const DesignPassing> passings, double height, double capacity, bool known)
 {
   BarrierOutcome outcome;
+  outcome.caught.frequency = outcome.over.frequency = outcome.tooStrong.frequency =
+    known ? 0.0 : kNan;
   for (const DesignPassing& passing : passings)
   {
     BarrierOutcome::Count& count = !(passing.top <= height) ? outcome.over

@@ -83,6 +83,7 @@ struct DesignPassing
   double speed = 0.0;     ///< m/s
   double top = 0.0;       ///< Height of its highest point, m; NaN if it is not known.
   double frequency = 0.0; ///< 1/a; NaN if it is not known.
+  int run = 0;            ///< As RockRuns has it: each numbers its sources by itself.
 
   /// A rock that broke counts once, with the largest values of its pieces; its top is known if that
   /// of each piece is.
@@ -118,7 +119,7 @@ struct BarrierOutcome
   struct Count
   {
     int rocks = 0;
-    double frequency = 0.0; ///< 1/a
+    double frequency = 0.0; ///< 1/a; NaN if it is not known, of no rocks, too.
   };
   Count caught, over, tooStrong;
 
@@ -127,6 +128,8 @@ struct BarrierOutcome
 };
 
 /// Of a barrier of this height (m) and capacity (J). Frequencies are summed in the order given.
-BarrierOutcome outcomeOf(std::span<const DesignPassing> passings, double height, double capacity);
+/// Unless they are `known` there is no sum of them, not even of none: 0 would say never.
+BarrierOutcome outcomeOf(
+  std::span<const DesignPassing> passings, double height, double capacity, bool known = true);
 
 } // namespace rockfall

@@ -78,6 +78,22 @@ TEST(Design, WhatABarrierDoesToTenRocks)
   EXPECT_EQ(outcomeOf(std::span(&unknown, 1), 4.0, 1e6).over.rocks, 1);
 }
 
+/// What is not known of all is not known of none of them either: 0 would say that none ever comes.
+TEST(Design, FrequenciesThatAreNotKnown)
+{
+  const std::vector<DesignPassing> rocks{ { 1, 20e3, 5, 1.0,
+    std::numeric_limits<double>::quiet_NaN() } };
+  const BarrierOutcome outcome = outcomeOf(rocks, 4.0, 1000e3, false);
+  EXPECT_EQ(outcome.caught.rocks, 1);
+  for (const BarrierOutcome::Count& count : { outcome.caught, outcome.over, outcome.tooStrong })
+  {
+    EXPECT_TRUE(std::isnan(count.frequency));
+  }
+  EXPECT_TRUE(std::isnan(outcomeOf({}, 4.0, 1000e3, false).frequency()));
+  EXPECT_EQ(outcomeOf({}, 4.0, 1000e3).frequency(), 0.0);
+  EXPECT_EQ(outcomeOf(rocks, 4.0, 1000e3).over.frequency, 0.0); // of no rock that is over it
+}
+
 TEST(Design, SmallestSufficientClass)
 {
   EXPECT_EQ(sufficientClass(0.0), 0);
