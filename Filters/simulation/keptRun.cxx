@@ -1,5 +1,6 @@
 #include "simulation/keptRun.h"
 
+#include "base/Mixer.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "counts/lostRocks.h"
@@ -117,6 +118,22 @@ std::string takenInstead(vtkPolyData* input)
 
 /// Of rocks that bring names in field arrays: which of them have none there, as a note; empty if
 /// all have.
+/// Number of what is released: parts of one study have the same.
+std::uint64_t contentOf(const RunFrame& frame)
+{
+  Mixer mixer;
+  mixer.add(frame.origin);
+  for (std::size_t k = 0; k < frame.rocks.size(); ++k)
+  {
+    const Rock& rock = frame.rocks[k];
+    mixer.add(rock.blockId);
+    mixer.add(frame.sourceIds[k]);
+    mixer.add(rock.position);
+    mixer.add(rock.density * rock.shape.integrals().volume);
+  }
+  return mixer.value();
+}
+
 std::string namesLost(vtkPolyData* input, std::span<const Rock> rocks)
 {
   const std::set<std::int64_t> named = namedBlocks(input);
@@ -337,8 +354,13 @@ void KeptRun::describe()
   }
   // Maps and collectors need no other input, and files of trajectories no slope beside them.
   referToSlope(ground, trajectories->GetFieldData());
+  std::string properties = statementOf(parameters);
+  if (!frame.rocks.empty())
+  {
+    properties += "\n" + releaseLine(contentOf(frame), frame.rocks.front().blockId);
+  }
   addArray<vtkStringArray>(trajectories->GetFieldData(), kRunProperties)
-    ->InsertNextValue(statementOf(parameters));
+    ->InsertNextValue(properties);
   writeTiles(trajectories);
 }
 

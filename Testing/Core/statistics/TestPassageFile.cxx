@@ -278,6 +278,29 @@ TEST_F(TestPassageFile, OtherRunsAndEndTimesAreTold)
   EXPECT_NE(notes(7, "Rigid 0")[0].find(": TimeStep 0.005 s there alone."), std::string::npos);
 }
 
+/// Two cliffs whose rocks both begin with block 1: each rock would be one with that of the other.
+TEST(RunOrigin, ReleasesUnderTheSameNumbers)
+{
+  const auto notes = [](std::initializer_list<std::pair<std::uint64_t, std::int64_t>> releases)
+  {
+    std::vector<RunOrigin> runs;
+    for (const auto& [content, first] : releases)
+    {
+      runs.push_back({ 7, "Rigid 0\n" + releaseLine(content, first) });
+    }
+    runs.push_back({ 7, "Rigid 0" }); // what it released is not known
+    return askAfterRuns(runs, [](std::size_t k) { return "run " + std::to_string(k); });
+  };
+  EXPECT_TRUE(notes({ { 5, 1 }, { 5, 1 } }).empty());   // parts of one study
+  EXPECT_TRUE(notes({ { 5, 1 }, { 6, 100 } }).empty()); // numbered apart
+  const auto told = notes({ { 5, 1 }, { 6, 100 }, { 7, 100 } });
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].find("1 of 4 runs released other rocks under the same block ids, first run 2, "
+                         "not those of run 1: rocks of one number count as one"),
+    0u)
+    << told[0];
+}
+
 TEST_F(TestPassageFile, ARockIsLostOnceWithItsPieces)
 {
   HazardRaster a = rasterOf([](int k) { return k < 10; });
