@@ -412,7 +412,7 @@ LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
       largest.takeLarger(piece.kineticEnergy, piece.velocity.norm(), piece.top);
       height = std::fmax(height, piece.heightOverGround);
     }
-    summary.frequencies.add(rock.frequency);
+    summary.frequencies.add(rock.weight);
     summary.energies.push_back(largest.energy);
     speeds.push_back(largest.speed);
     if (!std::isnan(height))

@@ -50,6 +50,8 @@ struct Crossing
   double centreOverGround = std::numeric_limits<double>::quiet_NaN();
   double top = std::numeric_limits<double>::quiet_NaN();       ///< topOverGround
   double frequency = std::numeric_limits<double>::quiet_NaN(); ///< Of the rock, 1/a, if known.
+  /// Of this fall of the rock, 1/a: its frequency over the iterations that released it.
+  double weight = std::numeric_limits<double>::quiet_NaN();
   /// Between the horizontal velocity and the line's normal on the side that the rock goes to, rad:
   /// 0 straight across, positive if it goes towards the line's end, ±π/2 along it.
   double horizontalAngle = 0.0;
@@ -80,7 +82,7 @@ struct LineSummary
   SampleStatistics energy;
   SampleStatistics height;       ///< m
   SampleStatistics speed;        ///< m/s
-  FrequencyRange frequencies;    ///< Of all rocks.
+  FrequencyRange frequencies;    ///< Weights of all rocks.
   int caught = 0;                ///< As outcomeOf has it, at the first passing.
   double caughtShare = 0.0;      ///< Of those that passed.
   double caughtShareError = 0.0; ///< binomialError.

@@ -12,6 +12,7 @@
 #include "shared/slopeReference.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/HazardRaster.h"
+#include "statistics/copies.h"
 #include "statistics/passageFile.h"
 #include "statistics/sourceReach.h"
 #include "terrain/plausible.h"
@@ -26,6 +27,7 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <initializer_list>
@@ -371,13 +373,40 @@ void markEmptyMap(vtkImageData* image)
 namespace
 {
 
+/// Finds copies among the rocks of several runs by their passages, if any.
+class CopiesOfRuns
+{
+public:
+  explicit CopiesOfRuns(const RockReleases& rocks)
+    : runs_(rocks.runs())
+  {
+  }
+
+  void add(const Passage& passage)
+  {
+    const float speed = passage.maxima[std::size_t(Hazard::Speed)];
+    if (speed > 0.0F && runs_.hasSeveral(passage.rock)) // rocks that lie still are alike by chance
+    {
+      const Maxima& m = passage.maxima;
+      copies_.add(passage.iteration, passage.rock, passage.blockId,
+        std::array{ double(passage.cell), double(passage.entries), double(passage.angle),
+          double(m[0]), double(m[1]), double(m[2]), double(m[3]) });
+    }
+  }
+  std::vector<std::string> notes() const { return copyNotes(copies_.count()); }
+
+private:
+  RockRuns runs_;
+  Copies copies_;
+};
+
 /// The map but for its heights and coordinate system. `corner`: the
-/// south-western one, in the world.
+/// south-western one, in the world. `copies`, if given, are told.
 void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& releases, bool withTerrain,
   const LostRocks& lost, const HazardMapOptions& options, const RockReleases& rocks,
   std::vector<std::string> notes,
   const std::function<void(const std::function<void(const Passage&)>&)>& forEach,
-  vtkImageData* image)
+  CopiesOfRuns* copies, vtkImageData* image)
 {
   image->Initialize();
   image->SetExtent(0, grid.columns, 0, grid.rows, 0, 0);
@@ -400,6 +429,10 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
   forEach(
     [&](const Passage& passage)
     {
+      if (copies)
+      {
+        copies->add(passage);
+      }
       if (!layers.drops(passage))
       {
         summarizer.add(passage);
@@ -417,6 +450,10 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
     { double(grid.columns), double(grid.rows), grid.cellSize, corner.x(), corner.y(), released,
       withTerrain ? 1.0 : 0.0 });
   layers.tellLeftOut(image->GetFieldData());
+  if (copies)
+  {
+    std::ranges::move(copies->notes(), std::back_inserter(notes));
+  }
   std::ranges::move(layers.notes(), std::back_inserter(notes));
   if (layers.hasQuantiles())
   {
@@ -520,7 +557,7 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
         use(passage);
       }
     },
-    image);
+    nullptr, image);
   if (terrain && !addElevation(*terrain, grid, image) && !terrainMesh &&
     !hasTerrain(trajectories->GetFieldData()))
   {
@@ -542,10 +579,12 @@ void makeHazardImage(
   {
     notes.push_back(ownNotUsed(options.frequency.annualFrequency));
   }
+  CopiesOfRuns copies(files.rocks());
   fillImage(
     grid, Vec3(grid.west, grid.south, 0.0), files.releases(), true, files.lost(), options,
     files.rocks(), std::move(notes),
-    [&files](const std::function<void(const Passage&)>& use) { files.forEach(use); }, image);
+    [&files](const std::function<void(const Passage&)>& use) { files.forEach(use); }, &copies,
+    image);
   writeCoordinateSystem(files.crs(), files.origin(), image->GetFieldData());
 }
 

@@ -7,6 +7,7 @@
 #include "shared/errorReport.h"
 #include "shared/inputContent.h"
 #include "shared/rockPaths.h"
+#include "statistics/copies.h"
 
 #include "vtkCellData.h"
 #include "vtkFieldData.h"
@@ -160,12 +161,7 @@ std::vector<std::string> doubtsOn(vtkPolyData* trajectories, vtkPolyData* mesh)
   {
     notes.emplace_back("The run goes on: these are its rocks so far");
   }
-  if (const std::int64_t copies = copiesIn(trajectories); copies > 0)
-  {
-    notes.push_back(std::to_string(copies) +
-      " rocks fell exactly as another one of their iteration: a run that was made again with other "
-      "block ids and the same Seed says nothing new");
-  }
+  std::ranges::move(copyNotes(copiesIn(trajectories)), std::back_inserter(notes));
   vtkDataArray* released = fields->GetArray(kRocksReleased);
   const std::int64_t there = lostOf(trajectories).rocks;
   const std::int64_t all =

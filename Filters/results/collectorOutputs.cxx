@@ -103,10 +103,10 @@ ReleasedRocks releasedIn(vtkPolyData* trajectories)
   return rocks;
 }
 
-void addPath(const RockPath& path, Loss loss, ReleasedRocks& rocks)
+void addPath(const RockPath& path, Loss loss, double frequency, ReleasedRocks& rocks)
 {
   const double end = path.points.empty() ? 0.0 : path.points.back().time;
-  const CollectedRock added{ path.iteration, path.rock, path.blockId, loss, end };
+  const CollectedRock added{ path.iteration, path.rock, path.blockId, loss, end, frequency };
   if (path.piece == 0)
   {
     rocks.push_back(added);
@@ -142,8 +142,9 @@ bool isReleased(const ReleasedRocks& rocks, const Crossing& crossing)
     [](const CollectedRock& a, const CollectedRock& b) { return keyOf(a) < keyOf(b); });
 }
 
-std::vector<LostRocks> lostBefore(
-  std::size_t lines, std::span<const Crossing> crossings, const ReleasedRocks& released)
+std::vector<LostRocks> lostBefore(std::size_t lines, std::span<const Crossing> crossings,
+  const ReleasedRocks& released,
+  const std::function<void(std::size_t line, const CollectedRock& rock)>& use)
 {
   std::set<std::tuple<int, int, int, std::int64_t>> passed;
   for (const Crossing& c : crossings)
@@ -157,9 +158,22 @@ std::vector<LostRocks> lostBefore(
     {
       const bool before = !passed.contains({ int(line), rock.iteration, rock.rock, rock.blockId });
       lost[line].add(before ? rock.loss : Loss::None, rock.endTime, kLeastWay);
+      if (use && before && rock.loss != Loss::None)
+      {
+        use(line, rock);
+      }
     }
   }
   return lost;
+}
+
+std::vector<std::string> lostBeforeNotes(std::span<const LostRocks> lost)
+{
+  const auto most = std::ranges::max_element(lost, {}, &LostRocks::lost);
+  return most == lost.end()
+    ? std::vector<std::string>()
+    : lostNotes(
+        *most, lost.size() == 1 ? " before they passed the line" : " before they passed a line");
 }
 
 void askAfterGroundUnder(
@@ -189,7 +203,7 @@ bool liesAcross(const RockPath& path, const CollectorLine& line)
 
 std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
   std::span<const CollectorLine> lines, std::span<const LostRocks> lost,
-  std::span<const std::int64_t> across)
+  const FrequencyRange& weights, std::span<const std::int64_t> across)
 {
   constexpr std::size_t kMostNames = 5; // in a note
   std::vector<std::string> notes;
@@ -242,10 +256,7 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
     " of " + std::to_string(lines.size()) +
       " lines rocks lie whose centre has not passed it, first ",
     ": they do not count. Draw a line half a rock before what it stands for");
-  std::ranges::move(
-    lostNotes(
-      most, lines.size() == 1 ? " before they passed the line" : " before they passed a line"),
-    std::back_inserter(notes));
+  std::ranges::move(lostBeforeNotes(lost), std::back_inserter(notes));
   for (const auto& [highest, of] : few)
   {
     if (!look)
@@ -254,6 +265,7 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
     }
   }
   std::ranges::move(differing.notes(), std::back_inserter(notes));
+  std::ranges::move(weights.notesOnShares(), std::back_inserter(notes));
   return notes;
 }
 
@@ -265,12 +277,14 @@ void writeReleased(const ReleasedRocks& released, std::size_t crossings, vtkFiel
   const auto blocks = addArray<vtkIdTypeArray>(field, "CollectorBlocks");
   const auto losses = addArray<vtkIntArray>(field, "CollectorLosses");
   const auto ends = addArray<vtkDoubleArray>(field, "CollectorEnds");
+  const auto frequencies = addArray<vtkDoubleArray>(field, kCollectorFrequencies);
   for (const CollectedRock& rock : released)
   {
     rocks->InsertNextTuple2(rock.iteration, rock.rock);
     blocks->InsertNextValue(vtkIdType(rock.blockId));
     losses->InsertNextValue(int(rock.loss));
     ends->InsertNextValue(rock.endTime);
+    frequencies->InsertNextValue(rock.frequency);
   }
 }
 

@@ -1,8 +1,7 @@
 #include "results/designTables.h"
 
-#include "base/errors.h"
 #include "shared/columns.h"
-#include "statistics/rockReleases.h"
+#include "statistics/copies.h"
 #include "statistics/sample.h"
 
 #include "vtkDataSetAttributes.h"
@@ -13,6 +12,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -23,22 +23,6 @@ namespace
 {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// The rocks with their frequencies.
-RockReleases rocksOf(const MergedCrossings& merged, vtkDataArray* frequency)
-{
-  RockReleases result;
-  for (const CollectedRock& rock : merged.released)
-  {
-    result.add(rock.rock, rock.blockId, {});
-  }
-  for (std::size_t k = 0; k < merged.crossings.size(); ++k)
-  {
-    const Crossing& c = merged.crossings[k];
-    result.add(c.rock, c.blockId, { 0, frequency->GetTuple1(vtkIdType(k)) });
-  }
-  return result;
-}
 
 constexpr double kKilo = 1000.0;
 
@@ -84,21 +68,37 @@ double shareOf(int rocks, int all)
 
 } // namespace
 
+BarrierOutcome DesignLine::outcome(double capacity) const
+{
+  return outcomeOf(passings, line.barrierHeight, capacity, known);
+}
+
 std::vector<DesignLine> designLines(
   const MergedCrossings& merged, vtkPolyData* points, double annualFrequency)
 {
-  std::vector<DesignLine> lines;
-  for (const CollectorLine& line : merged.lines)
-  {
-    lines.push_back({ line, {} });
-  }
-  vtkPointData* data = points->GetPointData();
-  vtkDataArray *source = data->GetArray("SourceId"), *frequency = data->GetArray("Frequency");
   const bool together = annualFrequency > 0.0;
-  const bool own = frequency && !together;
-  const RockReleases rocks = own ? rocksOf(merged, frequency) : RockReleases();
   const double share = together ? annualFrequency / double(merged.released.size()) : kNan;
+  const bool known = together || merged.releases.haveFrequencies();
+  std::vector<DesignLine> lines(merged.lines.size());
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    lines[k].line = merged.lines[k];
+    lines[k].known = known;
+    lines[k].lostFrequency = known ? 0.0 : kNan;
+  }
+  const std::vector<LostRocks> lost = lostBefore(lines.size(), merged.crossings, merged.released,
+    [&](std::size_t line, const CollectedRock& rock)
+    {
+      lines[line].lostFrequency +=
+        together ? share : merged.releases.weight(rock.rock, rock.blockId);
+    });
+  vtkDataArray* source = points->GetPointData()->GetArray("SourceId");
+  const RockRuns runs = merged.releases.runs();
   std::vector<const Crossing*> last(lines.size()); // of each line
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    lines[k].lost = lost[k];
+  }
   for (std::size_t k = 0; k < merged.crossings.size(); ++k)
   {
     const Crossing& c = merged.crossings[k];
@@ -114,12 +114,9 @@ std::vector<DesignLine> designLines(
           c.kineticEnergy, c.velocity.norm(), c.top);
         continue;
       }
-      Passage of;
-      of.rock = c.rock;
-      of.blockId = c.blockId;
       lines[std::size_t(c.line)].passings.push_back(
         { source ? std::int64_t(source->GetTuple1(id)) : -1, c.kineticEnergy, c.velocity.norm(),
-          c.top, own ? rocks.weight(of) : share });
+          c.top, together ? share : c.weight, source ? runs.of(c.rock, c.blockId) : 0 });
     }
   }
   return lines;
@@ -190,7 +187,12 @@ void writeClasses(const std::vector<DesignLine>& lines, vtkTable* output)
       kind + "Share", [of = of](R r) { return shareOf((r.outcome.*of).rocks, r.outcome.rocks()); });
   }
   columns.add("UncaughtShareHigh",
-    [](R r) { return shareAtMost(uncaughtRocks(r.outcome), r.outcome.rocks()); });
+    [](R r)
+    {
+      // Nobody knows whether a rock that was lost before comes, and gets past.
+      const auto lost = r.line.lost.lost();
+      return shareAtMost(uncaughtRocks(r.outcome) + lost, r.outcome.rocks() + lost);
+    });
   for (const auto& [kind, of] : kinds)
   {
     columns.add(kind + "Frequency", [of = of](R r) { return (r.outcome.*of).frequency; });
@@ -198,10 +200,8 @@ void writeClasses(const std::vector<DesignLine>& lines, vtkTable* output)
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     const DesignLine& line = lines[k];
-    const auto add = [&](const std::string& name, double maximum, double service)
-    {
-      columns.append({ { k, line }, name, maximum, service,
-        outcomeOf(line.passings, line.line.barrierHeight, maximum) });
+    const auto add = [&](const std::string& name, double maximum, double service) {
+      columns.append({ { k, line }, name, maximum, service, line.outcome(maximum) });
     };
     add("barrier", line.line.barrierCapacity, 0.0);
     for (std::size_t level = 0; level < barrierClasses.size(); ++level)
@@ -235,22 +235,22 @@ void writeSources(const std::vector<DesignLine>& lines, vtkTable* output)
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     const DesignLine& line = lines[k];
-    std::map<std::int64_t, std::vector<DesignPassing>> sources;
+    std::map<std::pair<std::int64_t, int>, std::vector<DesignPassing>> sources; // of each run
     for (const DesignPassing& passing : line.passings)
     {
-      sources[passing.source].push_back(passing);
+      sources[{ passing.source, passing.run }].push_back(passing);
     }
-    const auto outcomeAt = [&line](const std::vector<DesignPassing>& passings)
-    { return outcomeOf(passings, line.line.barrierHeight, line.line.barrierCapacity); };
-    const BarrierOutcome all = outcomeAt(line.passings);
+    const BarrierOutcome all = line.outcome();
     for (const auto& [source, passings] : sources)
     {
+      const BarrierOutcome outcome =
+        outcomeOf(passings, line.line.barrierHeight, line.line.barrierCapacity, line.known);
       double energy = 0.0;
       for (const DesignPassing& passing : passings)
       {
         energy = std::max(energy, passing.energy);
       }
-      columns.append({ { k, line }, source, outcomeAt(passings), all, energy });
+      columns.append({ { k, line }, source.first, outcome, all, energy });
     }
   }
 }
@@ -285,12 +285,12 @@ void writePlaces(const std::vector<DesignLine>& lines, const PartialFactors& fac
   columns.add(
     "UncaughtShare", [](R r) { return shareOf(uncaughtRocks(r.outcome), r.outcome.rocks()); });
   columns.add("UncaughtFrequency", [](R r) { return uncaughtFrequency(r.outcome); });
+  columns.add("LostBefore", [](R r) { return r.line.lost.lost(); });
+  columns.add("LostFrequency", [](R r) { return r.line.lostFrequency; });
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     const DesignLine& line = lines[k];
-    columns.append(
-      { { k, line }, outcomeOf(line.passings, line.line.barrierHeight, line.line.barrierCapacity),
-        designLevels(line.passings) });
+    columns.append({ { k, line }, line.outcome(), designLevels(line.passings) });
   }
 }
 

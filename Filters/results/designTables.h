@@ -6,6 +6,7 @@
 #include "results/mergedCrossings.h"
 #include "statistics/design.h"
 
+#include <string>
 #include <vector>
 
 class vtkPolyData;
@@ -20,11 +21,17 @@ struct DesignLine
 {
   CollectorLine line; ///< Name, barrier and offset only.
   std::vector<DesignPassing> passings;
+  LostRocks lost;             ///< Before they passed it.
+  double lostFrequency = 0.0; ///< Of these, 1/a.
+  bool known = false;         ///< Whether frequencies are.
+
+  /// Of the barrier of the line, or of another capacity, J.
+  BarrierOutcome outcome(double capacity) const;
+  BarrierOutcome outcome() const { return this->outcome(line.barrierCapacity); }
 };
 
 /// Of crossings that mergeCrossings made, with `points`. `annualFrequency` (1/a) is that of all
-/// releases together; 0 takes the point array Frequency, NaN if there is none. Throws DataError if
-/// a frequency is bad.
+/// releases together; 0 takes those of the rocks, NaN if there are none.
 std::vector<DesignLine> designLines(
   const MergedCrossings& merged, vtkPolyData* points, double annualFrequency);
 
@@ -35,7 +42,7 @@ void writeDesign(
 /// A row per line and barrier: that of the line, then levels 0 to 7 with its height.
 void writeClasses(const std::vector<DesignLine>& lines, vtkTable* output);
 
-/// A row per line and source, by number.
+/// A row per line and source, by number and run.
 void writeSources(const std::vector<DesignLine>& lines, vtkTable* output);
 
 /// A row per line, for a chart over the offset. `released`: rocks × iterations.

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <charconv>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -180,10 +181,13 @@ ReleasedRocks releasedOf(vtkFieldData* field, std::size_t input)
         " rocks");
     }
   }
+  vtkDataArray* frequencies = field->GetArray(kCollectorFrequencies); // not of earlier versions
+  const bool known = frequencies && frequencies->GetNumberOfTuples() == blocks->GetNumberOfTuples();
   for (vtkIdType i = 0; i < released->GetNumberOfTuples(); ++i)
   {
     rocks.push_back({ int(released->GetComponent(i, 0)), int(released->GetComponent(i, 1)),
-      std::int64_t(blocks->GetTuple1(i)), Loss(int(losses->GetTuple1(i))), ends->GetTuple1(i) });
+      std::int64_t(blocks->GetTuple1(i)), Loss(int(losses->GetTuple1(i))), ends->GetTuple1(i),
+      known ? frequencies->GetTuple1(i) : std::numeric_limits<double>::quiet_NaN() });
   }
   checkReleased(rocks);
   return rocks;
@@ -204,6 +208,20 @@ void requireReleased(
         ", which is not among the rocks of its collector: were crossings of several collectors "
         "appended? Merge Collectors puts them together");
     }
+  }
+}
+
+/// Frequencies of some rocks only would be as if the others never fell.
+void requireAlikeFrequencies(vtkPolyData* first, vtkPolyData* other, std::size_t input)
+{
+  const auto has = [](vtkPolyData* data)
+  { return data->GetPointData()->GetArray("Frequency") != nullptr; };
+  if (has(first) != has(other))
+  {
+    throw DataError(numbered(input) + "'s crossings have " +
+      (has(other) ? "a Frequency, those before have none: "
+                  : "no Frequency, those before have one: ") +
+      "of rocks together all frequencies are known, or none");
   }
 }
 
@@ -296,6 +314,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
       appendPlaces(inputs[k], k, lines, places);
       requireReleased(std::span(places).subspan(first), released, k);
       pattern = pattern ? pattern : inputs[k];
+      requireAlikeFrequencies(pattern, inputs[k], k);
     }
     rocks.insert(rocks.end(), released.begin(), released.end());
   }
@@ -323,6 +342,16 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     points->SetPoint(id, place);
     vertices->InsertNextCell(1, &id);
     merged.crossings.push_back(c);
+  }
+  merged.releases = releasesOf(rocks, merged.crossings);
+  weigh(merged.releases, merged.crossings);
+  for (std::string& note : copyNotes(merged.releases, merged.crossings))
+  {
+    // Of crossings that were merged before it has been told.
+    if (std::ranges::find(merged.notes, note) == merged.notes.end())
+    {
+      merged.notes.push_back(std::move(note));
+    }
   }
   copyArrays(
     inputs, places, (pattern ? pattern : inputs[0])->GetPointData(), output->GetPointData());

@@ -1,6 +1,7 @@
 #include "vtkBarrierDesign.h"
 
 #include "base/require.h"
+#include "results/designNotes.h"
 #include "results/designTables.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
@@ -22,6 +23,7 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkBarrierDesign);
@@ -40,6 +42,22 @@ enum OutputPorts
 /// Of the survey of the slope, of that of the block, and of trajectories: as RocFall3's page on
 /// UNI 11211-4 has them.
 constexpr double kGood = 1.02, kPoor = 1.10;
+
+/// Names of the factors that a set has, too, as far as they say something; empty if none does.
+std::string namesOfTyped(const rockfall::PartialFactors& factors)
+{
+  std::string names;
+  for (const auto& [name, value] : { std::pair("SlopeSurveyFactor", factors.slopeSurvey),
+         std::pair("TrajectoryFactor", factors.trajectories),
+         std::pair("BlockSurveyFactor", factors.blockSurvey) })
+  {
+    if (value != 1.0)
+    {
+      names += (names.empty() ? "" : ", ") + std::string(name);
+    }
+  }
+  return names;
+}
 
 } // namespace
 
@@ -93,14 +111,18 @@ int vtkBarrierDesign::RequestData(
       rockfall::PartialFactors factors{ this->SlopeSurveyFactor, this->TrajectoryFactor,
         this->BlockSurveyFactor, this->UnitWeightFactor, this->RiskFactor, this->BarrierFactor,
         this->Freeboard, this->DesignMass };
+      std::vector<std::string> notes;
       if (this->FactorSet != TYPED)
       {
+        if (std::string replaced = namesOfTyped(factors); !replaced.empty())
+        {
+          notes.push_back("FactorSet replaces what these properties say: " + std::move(replaced));
+        }
         factors.slopeSurvey = factors.trajectories = factors.blockSurvey =
           this->FactorSet == UNI_GOOD ? kGood : kPoor;
       }
       rockfall::checkFactors(factors);
 
-      std::vector<std::string> notes;
       if (this->AnnualFrequency > 0.0)
       {
         rockfall::askAfterFrequency(this->AnnualFrequency, notes);
@@ -114,21 +136,20 @@ int vtkBarrierDesign::RequestData(
       const filters::MergedCrossings merged = filters::mergeCrossings({ &crossings, 1 }, points);
       const std::vector<filters::DesignLine> lines =
         filters::designLines(merged, points, this->AnnualFrequency);
-      rockfall::FrequencyRange differing;
+      std::vector<rockfall::LostRocks> lost;
       for (const filters::DesignLine& line : lines)
       {
-        rockfall::FrequencyRange ofLine;
-        for (const rockfall::DesignPassing& passing : line.passings)
-        {
-          ofLine.add(passing.frequency);
-        }
-        if (ofLine.differs())
-        {
-          differing.add(ofLine);
-        }
+        lost.push_back(line.lost);
       }
-      std::ranges::move(merged.notes, std::back_inserter(notes));
-      std::ranges::move(differing.notes(), std::back_inserter(notes));
+      const bool own = this->AnnualFrequency <= 0.0; // else all rocks are alike
+      const rockfall::FrequencyRange released =
+        own ? merged.releases.weights() : rockfall::FrequencyRange();
+      for (std::vector<std::string> more :
+        { merged.notes, filters::lostBeforeNotes(lost), filters::frequencyNotes(lines, released),
+          filters::sourceNotes(lines), filters::factorNotes(lines, factors) })
+      {
+        std::ranges::move(more, std::back_inserter(notes));
+      }
       vtkNew<vtkTable> design, classes, sources, places;
       filters::writeDesign(lines, factors, design);
       filters::writeClasses(lines, classes);

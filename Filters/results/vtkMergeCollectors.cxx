@@ -93,7 +93,8 @@ int vtkMergeCollectors::RequestData(
         filters::lostBefore(merged.lines.size(), merged.crossings, merged.released);
       std::vector<std::string> notes = merged.notes;
       std::ranges::move(
-        filters::lineNotes(summaries, merged.lines, lost), std::back_inserter(notes));
+        filters::lineNotes(summaries, merged.lines, lost, merged.releases.weights()),
+        std::back_inserter(notes));
       filters::writeLines(summaries, merged.lines, lost, table);
       vtkFieldData* const told[] = { table->GetFieldData(), points->GetFieldData() };
       filters::tellOn(told, notes);

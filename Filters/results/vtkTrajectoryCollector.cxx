@@ -9,6 +9,7 @@
 #include "mesh/precision.h"
 #include "results/collectorOutputs.h"
 #include "results/lineWalls.h"
+#include "results/rockWeights.h"
 #include "results/trajectoriesInput.h"
 #include "shared/arrays.h"
 #include "shared/errorReport.h"
@@ -31,6 +32,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -247,6 +249,7 @@ struct Collected
   std::vector<rockfall::LineSummary> summaries; ///< Of each line.
   std::vector<rockfall::LostRocks> lost;        ///< Likewise, before they passed it.
   std::vector<std::int64_t> across;             ///< Rocks and pieces that lie across it.
+  rockfall::FrequencyRange weights;             ///< Of all rocks that were released.
 };
 
 /// All crossings of all lines.
@@ -261,8 +264,10 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
   rockfall::filters::forEachPath(trajectories, origin,
     [&](const rockfall::RockPath& path, std::int64_t cell)
     {
+      const double often =
+        frequency ? frequency->GetTuple1(cell) : std::numeric_limits<double>::quiet_NaN();
       rockfall::filters::addPath(
-        path, rockfall::filters::lossOf(fate->GetTuple1(cell)), collected.released);
+        path, rockfall::filters::lossOf(fate->GetTuple1(cell)), often, collected.released);
       for (std::size_t k = 0; k < lines.size(); ++k)
       {
         found.clear();
@@ -271,13 +276,16 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
         collected.across[k] += lies && rockfall::filters::liesAcross(path, lines[k]) ? 1 : 0;
         for (rockfall::Crossing& crossing : found)
         {
-          crossing.frequency = frequency ? frequency->GetTuple1(cell) : crossing.frequency;
+          crossing.frequency = often;
           collected.crossings.push_back({ crossing, cell });
           all.push_back(crossing);
         }
       }
     });
   rockfall::filters::checkReleased(collected.released);
+  const rockfall::RockReleases releases = rockfall::filters::releasesOf(collected.released, all);
+  rockfall::filters::weigh(releases, all);
+  collected.weights = releases.weights();
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     collected.summaries.push_back(
@@ -414,8 +422,8 @@ int vtkTrajectoryCollector::RequestData(
       }
       else
       {
-        std::ranges::move(
-          filters::lineNotes(collected.summaries, lines, collected.lost, collected.across),
+        std::ranges::move(filters::lineNotes(collected.summaries, lines, collected.lost,
+                            collected.weights, collected.across),
           std::back_inserter(notes));
       }
       vtkFieldData* const told[] = { table->GetFieldData(), passings->GetFieldData() };

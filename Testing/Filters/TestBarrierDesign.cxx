@@ -7,9 +7,14 @@
 #include "vtkTable.h"
 #include "vtkTrajectoryCollector.h"
 
+#include "rock/results.h"
+
 #include <cmath>
 #include <initializer_list>
+#include <string>
 #include <utility>
+
+using rockfall::Fate;
 
 namespace
 {
@@ -43,9 +48,9 @@ protected:
   }
 
   /// The crossings of `iterations` iterations, in which all rocks come in the first and none in the
-  /// others; of the rocks with rock % parts == part.
-  vtkSmartPointer<vtkTrajectoryCollector> Collect(
-    bool frequencies = true, int iterations = 2, int parts = 1, int part = 0)
+  /// others, as all end with this fate; of the rocks with rock % parts == part.
+  vtkSmartPointer<vtkTrajectoryCollector> Collect(bool frequencies = true, int iterations = 2,
+    int parts = 1, int part = 0, Fate fate = Fate::Rested)
   {
     HandMadeTrajectories paths;
     vtkNew<vtkDoubleArray> width, frequency;
@@ -58,7 +63,7 @@ protected:
       for (int k = part; k < 10; k += parts)
       {
         paths.AddLevel(iteration, k, { 500000, 5100000.0 + 7 * k, 50 }, iteration == 0 ? 30.0 : 5.0,
-          rocks[k].speed, rocks[k].height);
+          rocks[k].speed, rocks[k].height, int(fate));
         width->InsertNextValue(1.0);
         source->InsertNextValue(rocks[k].source);
         frequency->InsertNextValue(rocks[k].frequency);
@@ -90,6 +95,21 @@ protected:
     }
     return table->GetValueByName(row, column).ToDouble();
   }
+
+  /// How many notes of a filter's port have these words.
+  static int Told(vtkAlgorithm* filter, int port, const std::string& words)
+  {
+    filter->Update();
+    auto* notes = vtkStringArray::SafeDownCast(
+      filter->GetOutputDataObject(port)->GetFieldData()->GetAbstractArray("Notes"));
+    int count = 0;
+    for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
+    {
+      count += notes->GetValue(k).find(words) != std::string::npos;
+    }
+    return count;
+  }
+  int Told(const std::string& words) { return Told(this->Filter, 0, words); }
 
   vtkNew<vtkPoints> Points;
   vtkNew<vtkPolyData> Drawn;
@@ -244,18 +264,7 @@ TEST_F(TestBarrierDesign, PlacesAlongAFamily)
 TEST_F(TestBarrierDesign, QuantilesOfRocksThatDifferInFrequency)
 {
   const auto told = [](vtkAlgorithm* filter, int port)
-  {
-    filter->Update();
-    auto* notes = vtkStringArray::SafeDownCast(
-      filter->GetOutputDataObject(port)->GetFieldData()->GetAbstractArray("Notes"));
-    int count = 0;
-    for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
-    {
-      count += notes->GetValue(k).find("by up to 16 times, but quantiles count each rock alike") !=
-        std::string::npos;
-    }
-    return count;
-  };
+  { return Told(filter, port, "by up to 16 times, but quantiles count each rock alike"); };
   const auto unlike = this->Collect(), unknown = this->Collect(false);
   vtkNew<vtkMergeCollectors> merge;
   merge->SetInputData(unlike->GetOutput());
@@ -266,6 +275,230 @@ TEST_F(TestBarrierDesign, QuantilesOfRocksThatDifferInFrequency)
   this->Filter->SetAnnualFrequency(0.5); // of all alike
   EXPECT_EQ(told(this->Filter, 0), 0);
   EXPECT_EQ(told(unknown, 1), 0);
+}
+
+/// All that pass are as rare as each other, but rarer than those that do not.
+TEST_F(TestBarrierDesign, SharesOfRocksThatDifferInFrequency)
+{
+  const char* const words =
+    "Rocks that are released differ in their frequencies, by up to 16 times, but shares at lines";
+  this->Points->SetPoint(0, 500010, 5100000.0 + 7 * 7 - 3, 0); // rocks 7 to 9, 1/64 a year
+  this->Points->Modified();
+  const auto unlike = this->Collect(), unknown = this->Collect(false);
+  vtkNew<vtkMergeCollectors> merge;
+  merge->SetInputData(unlike->GetOutput());
+  this->Filter->SetInputData(unlike->GetOutput());
+  EXPECT_EQ(this->Number(1, "CaughtShare", 0), 0.0);
+  EXPECT_EQ(this->Number(3, "Share", 0), 3.0 / 20);
+  EXPECT_EQ(this->Told("quantiles count each rock alike"), 0);
+  for (auto [filter, port] : { std::pair<vtkAlgorithm*, int>(unlike, 1), { merge, 1 } })
+  {
+    EXPECT_EQ(Told(filter, port, words), 1);
+  }
+  EXPECT_EQ(this->Told(words), 1);
+  EXPECT_EQ(Told(unknown, 1, words), 0);
+  this->Filter->SetAnnualFrequency(0.5); // of all alike
+  EXPECT_EQ(this->Told(words), 0);
+}
+
+/// 1/4 a year each, but rocks of one iteration and rocks of three: what passes is 3 to 1.
+TEST_F(TestBarrierDesign, RocksOfUnlikeIterations)
+{
+  vtkNew<vtkMergeCollectors> merge;
+  for (const int iterations : { 1, 3 })
+  {
+    const auto part = this->Collect(true, iterations, 2, iterations == 3);
+    for (const int data : { 0, 1 })
+    {
+      vtkFieldData* fields = data == 0
+        ? static_cast<vtkFieldData*>(part->GetOutput()->GetPointData())
+        : part->GetOutput()->GetFieldData();
+      fields->GetArray(data == 0 ? "Frequency" : "CollectorFrequencies")->FillComponent(0, 0.25);
+    }
+    merge->AddInputDataObject(0, part->GetOutput());
+  }
+  EXPECT_EQ(Told(merge, 1, "by up to 3 times, but quantiles count each rock alike"), 1);
+  EXPECT_EQ(Told(merge, 1, "by up to 3 times, but shares at lines count each rock alike"), 1);
+  this->Filter->SetInputConnection(merge->GetOutputPort());
+  EXPECT_EQ(this->Told("by up to 3 times, but quantiles count each rock alike"), 1);
+  EXPECT_DOUBLE_EQ(this->Number(3, "AnnualFrequency", 0), 5 * 0.25 + 5 * 0.25 / 3);
+}
+
+/// Not known is not never, where no rock passes or gets past, too.
+TEST_F(TestBarrierDesign, FrequenciesThatAreNotKnown)
+{
+  this->Filter->SetInputData(this->Collect(false)->GetOutput());
+  const auto expectUnknown = [this](int port, std::initializer_list<const char*> columns)
+  {
+    for (const char* column : columns)
+    {
+      EXPECT_TRUE(std::isnan(this->Number(port, column, 0))) << column;
+    }
+  };
+  EXPECT_EQ(this->Number(1, "TooStrong", 8), 0.0); // of class 7
+  EXPECT_TRUE(std::isnan(this->Number(1, "TooStrongFrequency", 8)));
+  const auto expectAll = [&]
+  {
+    expectUnknown(1, { "CaughtFrequency", "OverFrequency", "TooStrongFrequency" });
+    expectUnknown(3, { "AnnualFrequency", "UncaughtFrequency", "LostFrequency" });
+  };
+  expectAll();
+  expectUnknown(2, { "AnnualFrequency", "UncaughtFrequency" });
+  this->Points->SetPoint(0, 500029.5, 5099000, 0); // nothing passes there
+  this->Points->SetPoint(1, 500029.5, 5099001, 0);
+  this->Points->Modified();
+  this->Filter->SetInputData(this->Collect(false)->GetOutput());
+  EXPECT_EQ(this->Number(3, "Rocks", 0), 0.0);
+  expectAll();
+  this->Filter->SetInputData(this->Collect(true)->GetOutput());
+  EXPECT_EQ(this->Number(3, "AnnualFrequency", 0), 0.0);
+  this->Filter->SetInputData(this->Collect(false)->GetOutput());
+  this->Filter->SetAnnualFrequency(0.5);
+  EXPECT_EQ(this->Number(3, "AnnualFrequency", 0), 0.0);
+}
+
+/// Of some rocks only they are as if the others never fell.
+TEST_F(TestBarrierDesign, FrequenciesOfSomeRocksOnly)
+{
+  for (const bool first : { true, false })
+  {
+    vtkNew<vtkMergeCollectors> merge;
+    merge->AddInputDataObject(0, this->Collect(first, 2, 2, 0)->GetOutput());
+    merge->AddInputDataObject(0, this->Collect(!first, 2, 2, 1)->GetOutput());
+    merge->Update();
+    this->ExpectOneError({ "part 2", "Frequency", "or none" });
+  }
+}
+
+/// Rocks that were lost before the line may pass it, too.
+TEST_F(TestBarrierDesign, RocksThatWereLostBefore)
+{
+  this->Filter->SetInputData(this->Collect(true, 2, 1, 0, Fate::LeftDomain)->GetOutput());
+  EXPECT_EQ(
+    this->Told("10 of 20 rocks went over the edge of the DEM before they passed the line"), 1);
+  EXPECT_EQ(this->Number(3, "LostBefore", 0), 10.0);
+  double all = 0.0;
+  for (const Rock& rock : rocks)
+  {
+    all += rock.frequency / 2;
+  }
+  EXPECT_EQ(this->Number(3, "LostFrequency", 0), all);
+  EXPECT_EQ(this->Number(3, "AnnualFrequency", 0), all); // of those that were seen to pass
+  EXPECT_NEAR(this->Number(1, "UncaughtShareHigh", 0), 0.895919, 1e-6); // of 15 of 20
+  this->Filter->SetAnnualFrequency(0.5);
+  EXPECT_DOUBLE_EQ(this->Number(3, "LostFrequency", 0), 0.25);
+  this->Filter->SetAnnualFrequency(0.0);
+  this->Filter->SetInputData(this->Collect()->GetOutput());
+  EXPECT_EQ(this->Told("before they passed"), 0);
+  EXPECT_EQ(this->Number(3, "LostBefore", 0), 0.0);
+  EXPECT_EQ(this->Number(3, "LostFrequency", 0), 0.0);
+}
+
+/// Sources 1 and 2 of two runs, each of which numbers them by itself.
+TEST_F(TestBarrierDesign, SourcesOfTwoRuns)
+{
+  const char* const words = "2 of 2 SourceIds are of several runs, first 1: each run numbers its "
+                            "sources by itself";
+  const auto one = this->Collect(), other = this->Collect(true, 3);
+  vtkFieldData* const fields[] = { other->GetOutput()->GetPointData(),
+    other->GetOutput()->GetFieldData() };
+  for (vtkFieldData* of : fields)
+  {
+    vtkDataArray* blocks = of->GetArray(of == fields[0] ? "BlockId" : "CollectorBlocks");
+    for (vtkIdType k = 0; k < blocks->GetNumberOfTuples(); ++k)
+    {
+      blocks->SetTuple1(k, blocks->GetTuple1(k) + 50);
+    }
+  }
+  vtkDataArray* energy = other->GetOutput()->GetPointData()->GetArray("KineticEnergy");
+  for (vtkIdType k = 0; k < energy->GetNumberOfTuples(); ++k)
+  {
+    energy->SetTuple1(k, energy->GetTuple1(k) + 1000.0); // no copies
+  }
+  vtkNew<vtkMergeCollectors> merge;
+  merge->AddInputDataObject(0, other->GetOutput());
+  merge->AddInputDataObject(0, one->GetOutput());
+  this->Filter->SetInputConnection(merge->GetOutputPort());
+  const double ids[] = { 1, 1, 2, 2 };
+  const double all[] = { 0.5 + 0.125 + 0.015625, 0.5 + 0.0625 + 0.03125 };
+  for (int row = 0; row < 4; ++row)
+  {
+    EXPECT_EQ(this->Number(2, "SourceId", row), ids[row]);
+    EXPECT_EQ(this->Number(2, "Rocks", row), 5);
+    EXPECT_EQ(this->Number(2, "Share", row), 0.25);
+    EXPECT_NEAR(
+      this->Number(2, "AnnualFrequency", row), all[row / 2] / (row % 2 == 0 ? 2 : 3), 1e-12);
+  }
+  EXPECT_EQ(this->Told(words), 1);
+  EXPECT_EQ(this->Told("fell exactly"), 0);
+  this->Filter->SetInputData(one->GetOutput());
+  EXPECT_EQ(this->Told(words), 0);
+}
+
+/// The same run under other block ids: its frequencies come twice.
+TEST_F(TestBarrierDesign, ARunThatWasMadeAgain)
+{
+  const char* const words = "10 rocks fell exactly as another one of their iteration";
+  const auto one = this->Collect(), again = this->Collect();
+  vtkNew<vtkMergeCollectors> merge;
+  merge->AddInputDataObject(0, one->GetOutput());
+  merge->AddInputDataObject(0, again->GetOutput());
+  merge->Update();
+  this->ExpectOneError({ "is there twice" });
+  vtkFieldData* const fields[] = { again->GetOutput()->GetPointData(),
+    again->GetOutput()->GetFieldData() };
+  for (vtkFieldData* of : fields)
+  {
+    vtkDataArray* blocks = of->GetArray(of == fields[0] ? "BlockId" : "CollectorBlocks");
+    for (vtkIdType k = 0; k < blocks->GetNumberOfTuples(); ++k)
+    {
+      blocks->SetTuple1(k, blocks->GetTuple1(k) + 1000);
+    }
+  }
+  again->GetOutput()->Modified();
+  vtkNew<vtkMergeCollectors> twice;
+  twice->AddInputDataObject(0, one->GetOutput());
+  twice->AddInputDataObject(0, again->GetOutput());
+  EXPECT_EQ(Told(twice, 1, words), 1);
+  this->Filter->SetInputConnection(twice->GetOutputPort());
+  EXPECT_EQ(this->Told(words), 1);
+  EXPECT_EQ(Told(one, 1, words), 0);
+}
+
+/// What a factor replaces, leaves out or goes beyond is told.
+TEST_F(TestBarrierDesign, FactorsThatAreNotWhatOneMayThink)
+{
+  const char *const replaced = "FactorSet replaces what these properties say: ",
+                    *const less = "DesignMass makes less energy than the simulated rocks have",
+                    *const above = "are above the last class, 4500 kJ",
+                    *const alone = "partial factors are in Design and RequiredClass alone";
+  this->Filter->SetInputData(this->Collect()->GetOutput());
+  for (const char* words : { replaced, less, above, alone })
+  {
+    EXPECT_EQ(this->Told(words), 0) << words;
+  }
+  this->Filter->SetSlopeSurveyFactor(1.2);
+  this->Filter->SetBlockSurveyFactor(1.3);
+  EXPECT_EQ(this->Told(replaced), 0);
+  EXPECT_EQ(this->Told(alone), 1);
+  this->Filter->SetFactorSet(vtkBarrierDesign::UNI_GOOD);
+  EXPECT_EQ(this->Told(std::string(replaced) + "SlopeSurveyFactor, BlockSurveyFactor"), 1);
+  this->Filter->SetSlopeSurveyFactor(1.0);
+  this->Filter->SetBlockSurveyFactor(1.0);
+  EXPECT_EQ(this->Told(replaced), 0);
+  this->Filter->SetFactorSet(vtkBarrierDesign::TYPED);
+  this->Filter->SetDesignMass(500.0); // the rocks have 1000 kg: 20² / 4 kJ of 200.1
+  EXPECT_EQ(
+    this->Told("On 1 of 1 lines DesignMass makes less energy than the simulated rocks have, "
+               "first \"line 1\", 50 %: 30.25 kJ instead of 61.1 kJ"),
+    1);
+  this->Filter->SetDesignMass(1100.0);
+  EXPECT_EQ(this->Told(less), 0);
+  this->Filter->SetDesignMass(0.0);
+  this->Filter->SetBarrierFactor(25.0);
+  EXPECT_EQ(this->Told("On 1 of 1 lines design energies times BarrierFactor are above the last "
+                       "class, 4500 kJ, first \"line 1\", 95 %: 4575 kJ"),
+    1);
 }
 
 TEST_F(TestBarrierDesign, PartsAreTheWhole)

@@ -349,6 +349,54 @@ TEST_F(TestRockfallHazardMap, LeastReachAsksEachSource)
   check(reader->GetOutput());
 }
 
+/// The same run under other block ids, in a file of its own: its frequencies come twice.
+TEST_F(TestRockfallHazardMap, ARunThatWasMadeAgainInFiles)
+{
+  vtkNew<vtkDEMToCFESource> terrain;
+  terrain->Update();
+  const auto notesOf = [&](double speed, int blocks)
+  {
+    vtkNew<vtkHazardPassageReader> reader;
+    for (const int run : { 0, 1 })
+    {
+      HandMadeTrajectories paths;
+      vtkNew<vtkIdTypeArray> source;
+      source->SetName("SourceId");
+      for (int rock = 0; rock < 4; ++rock)
+      {
+        paths.AddLevel(0, rock, { 1, 3.0 + 2 * rock, 50 }, 20, run == 0 ? 5.0 : speed);
+        paths.Data->GetCellData()->GetArray("BlockId")->SetTuple1(rock, run * blocks + rock);
+        source->InsertNextValue(1);
+      }
+      paths.AddLevel(0, 4, { 1, 23, 50 }, 20, 5.0 + run); // one that differs
+      paths.Data->GetCellData()->GetArray("BlockId")->SetTuple1(4, run * blocks + 4);
+      source->InsertNextValue(1);
+      paths.Data->GetCellData()->AddArray(source);
+      paths.Data->GetFieldData()->RemoveArray("TerrainCRS");
+      vtkNew<vtkHazardPassageWriter> writer;
+      writer->SetInputDataObject(0, paths.Data);
+      writer->SetInputConnection(1, terrain->GetOutputPort());
+      writer->SetCellSize(5.0);
+      const std::string name = this->WriteFile(std::to_string(run) + ".passages", "");
+      writer->SetFileName(name.c_str());
+      writer->Write();
+      reader->AddFileName(name.c_str());
+    }
+    reader->Update();
+    std::string all;
+    auto* notes =
+      vtkStringArray::SafeDownCast(reader->GetOutput()->GetFieldData()->GetAbstractArray("Notes"));
+    for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
+    {
+      all += notes->GetValue(k) + "\n";
+    }
+    return all;
+  };
+  EXPECT_NE(notesOf(5.0, 10).find("4 rocks fell exactly as another one of their iteration"),
+    std::string::npos);
+  EXPECT_EQ(notesOf(6.0, 10).find("fell exactly"), std::string::npos);
+}
+
 /// A scenario that is shared out over files gives the map of the whole, frequencies and all.
 TEST_F(TestRockfallHazardMap, FrequenciesGoThroughFiles)
 {
