@@ -259,9 +259,12 @@ def lost(study, row):
 
 
 def often(study, row):
-    """How often a line is passed, 1/a; of one that nothing passed the limit, with 95 % confidence, as maps have it, if no
-    rock was lost before it."""
+    """How often a line is passed, 1/a, with and without the rocks that were lost before it; of one that nothing passed the limit,
+    with 95 % confidence, as maps have it, if no rock was lost before it."""
     frequency = study.places["AnnualFrequency"][row]
+    more = study.places["LostFrequency"][row] if "LostFrequency" in study.places else math.nan
+    if frequency > 0.0 and more > 0.0:
+        return f"{number(frequency)} to {number(frequency + more)}"
     together = study.values.get("lines", {}).get("AnnualFrequency") or 0.0
     if frequency != 0.0 or not (together or "Frequency" in study.rocks):
         return number(frequency)
@@ -395,8 +398,8 @@ def notes(study):
                     "others. RedrawVolume draws them anew in each.")
     often = study.rocks["Frequency"] if "Frequency" in study.rocks else np.zeros(1)
     if often.max() > (1.0 + 1e-9) * often.min():
-        made.append("Rocks differ in their frequencies, but 95 % values and design levels count each simulated rock alike, so rare rocks "
-                    "count too much in them. Release amounts in proportion to frequencies, or read the annual frequencies.")
+        made.append("Rocks differ in their frequencies, but shares, 95 % values and design levels count each simulated rock alike, so rare "
+                    "rocks count too much in them. Release amounts in proportion to frequencies, or read the annual frequencies.")
     steps = study.bodies["ContactSteps"].sum()
     unsettled = study.bodies["UnsettledSteps"].sum() / steps if steps else 0.0
     if unsettled > 0.003:

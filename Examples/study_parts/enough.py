@@ -145,6 +145,7 @@ class Enough:
         self.total = 0
         self.ways = []  # RunOut of each rock, m; without an end if it is not known
         self.lost = {}  # by line: rocks that were lost before it
+        self.often = (np.inf, 0.0)  # least and most frequent rock, 1/a
         if until["quantity"] == REACH:
             return
         self.greatest = {name: [] for name in lines if until.get("line", name) == name}
@@ -156,6 +157,9 @@ class Enough:
         with np.load(stem + ".npz") as chunk:
             first, ways, endless = ways_of(chunk)
             self.total += len(first)
+            if "Frequency" in chunk:
+                rates = chunk["Frequency"][first]
+                self.often = min(self.often[0], rates.min(initial=np.inf)), max(self.often[1], rates.max(initial=0.0))
             if self.until["quantity"] == REACH:
                 self.ways.extend(np.where(endless, np.inf, ways))
                 return
@@ -203,4 +207,6 @@ class Enough:
                 f"{one['from'] * scale:.4g} to {one['to'] * scale:.4g}{unit}"
             lost = f", as {one['lost']} were lost before it" if one.get("lost") else ""
             texts.append((f"{shown(one['line'])}: " if "line" in one else "") + between + lost)
-        return quantity + (": " if quantity == REACH else " at ") + "; ".join(texts)
+        unlike = self.often[1] > (1.0 + 1e-9) * self.often[0]
+        return quantity + (": " if quantity == REACH else " at ") + "; ".join(texts) + (
+            ". Rocks differ in their frequencies, but each counts alike in it" if unlike else "")
