@@ -58,6 +58,16 @@ assert "belong together" not in notes_of(HazardPassageReader(FileNames=files[:2]
 assert f"1 of 2 runs, first {files[2]}, fell on another slope" in notes_of(HazardPassageReader(FileNames=[files[0], files[2]]))
 assert steps.format(files[0]) in notes_of(HazardPassageReader(FileNames=[files[0], files[3]]))
 
+# --- Other rocks under the numbers of the first ones, in further iterations: each would be one with one of those.
+larger, apart = run(steep, 3, Volume=5), run(steep, 3, Volume=5, FirstBlockId=100)
+told = "1 of 2 runs released other rocks under the same block ids"
+for fall, alike in (larger, True), (apart, False), (next_one, False):
+    name = passages(fall, steep, "further.passages")
+    for notes in (notes_of(MergeCollectors(Input=[line(one), line(fall)])), notes_of(HazardPassageReader(FileNames=[files[0], name])),
+                  notes_of(TrajectoryCollector(Input=GroupDatasets(Input=[OutputPort(one, 1), OutputPort(fall, 1)]),
+                                              Points=[16, 0, 0, 16, 100, 0]))):
+        assert (told in notes) == alike, notes
+
 # --- The same of runs that ParaView groups or appends, and of a part of one.
 def made_of(given):
     """What each filter of statistics notes."""
