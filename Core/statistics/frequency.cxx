@@ -83,8 +83,7 @@ std::vector<std::string> FrequencyRange::notes() const
 
 std::vector<std::string> FrequencyRange::notesOnShares() const
 {
-  return this->notesOn(
-    "are released", "shares at lines", "a rock passes in Barrier Design");
+  return this->notesOn("are released", "shares at lines", "a rock passes in Barrier Design");
 }
 
 void FrequencySummarizer::add(const Passage& passage)
