@@ -202,7 +202,7 @@ void tell(const std::vector<std::string>& notes, vtkFieldData* fieldData, bool s
     showNotes(notes, fieldData);
     return;
   }
-  addTexts(fieldData, "Notes", notes);
+  keepNotes(notes, fieldData);
 }
 
 } // namespace

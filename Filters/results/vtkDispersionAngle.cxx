@@ -6,6 +6,7 @@
 #include "results/pathGroups.h"
 #include "results/trajectoriesInput.h"
 #include "shared/arrays.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/dispersion.h"
@@ -25,7 +26,9 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 vtkStandardNewMacro(vtkDispersionAngle);
@@ -185,6 +188,25 @@ int vtkDispersionAngle::FillOutputPortInformation(int port, vtkInformation* info
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::string> vtkDispersionAngle::IdleNotes() const
+{
+  rockfall::filters::IdleProperties idle;
+  const vtkNew<vtkDispersionAngle> usual;
+  if (this->AutomaticDirection)
+  {
+    idle.add(
+      "Direction", Vec3(this->Direction), Vec3(usual->Direction), "AutomaticDirection is on");
+  }
+  if (!this->UseGroups || this->GroupBy.empty())
+  {
+    idle.addTo(std::string(this->UseGroups ? "GroupBy is empty" : "UseGroups is off") +
+        ", without which these have no effect",
+      "ClassLimits", this->ClassLimits, usual->ClassLimits);
+  }
+  return idle.notes();
+}
+
+//------------------------------------------------------------------------------
 int vtkDispersionAngle::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -261,6 +283,7 @@ int vtkDispersionAngle::RequestData(
       }
       const std::vector<std::string> reach = runOuts.Notes();
       notes.insert(notes.end(), reach.begin(), reach.end());
+      std::ranges::move(this->IdleNotes(), std::back_inserter(notes));
       rockfall::filters::tellLost(rockfall::filters::lostOf(input), table->GetFieldData(), notes);
       vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
       vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);

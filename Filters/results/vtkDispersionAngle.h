@@ -107,6 +107,8 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
+  std::vector<std::string> IdleNotes() const; ///< On properties that have no effect.
+
   bool AutomaticDirection = true;
   double Direction[3] = { 1.0, 0.0, 0.0 };
   double Length = 0.0;

@@ -110,11 +110,17 @@ void requireNear(const Box2& lines, const Box2& rocks, const std::string& whose)
   }
 }
 
+/// Lines that have the barrier of the properties.
+struct ByProperties
+{
+  bool height = false, capacity = false;
+};
+
 /// The lines of a file, which must be where the trajectories are. What they do not say of their
 /// barrier is `barrier`'s.
 std::vector<CollectorLine> readLines(const std::string& fileName, const std::string& layerName,
   vtkPolyData* trajectories, const Box2& site, const Vec3& origin, const CollectorLine& barrier,
-  std::vector<std::string>& notes)
+  ByProperties& by, std::vector<std::string>& notes)
 {
   const std::string crs = rockfall::filters::readCrs(trajectories->GetFieldData());
   const rockfall::FileUnits units = rockfall::filters::readFileUnits(trajectories->GetFieldData());
@@ -126,6 +132,8 @@ std::vector<CollectorLine> readLines(const std::string& fileName, const std::str
     layer = read.layer;
     CollectorLine& line = lines.emplace_back();
     line.name = read.name.empty() ? "feature " + std::to_string(read.feature) : read.name;
+    by.height |= !read.height;
+    by.capacity |= !read.capacity;
     line.barrierHeight = read.height.value_or(barrier.barrierHeight);
     line.barrierCapacity = read.capacity ? *read.capacity * 1000.0 : barrier.barrierCapacity;
     for (const Eigen::Vector2d& place : read.points)
@@ -327,6 +335,32 @@ int vtkTrajectoryCollector::FillOutputPortInformation(int port, vtkInformation* 
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::string> vtkTrajectoryCollector::IdleNotes(bool height, bool capacity) const
+{
+  rockfall::filters::IdleProperties idle;
+  const vtkNew<vtkTrajectoryCollector> usual;
+  if (this->ParallelLines == 0)
+  {
+    idle.add(
+      "ParallelSpacing", this->ParallelSpacing, usual->ParallelSpacing, "ParallelLines is 0", " m");
+  }
+  if (this->FileName.empty())
+  {
+    idle.add("AllowReferences", this->AllowReferences != 0, false, "there is no FileName");
+  }
+  const char* cause = "All lines of FileName have their own of what these properties say";
+  if (!height)
+  {
+    idle.addTo(cause, "BarrierHeight", this->BarrierHeight, usual->BarrierHeight);
+  }
+  if (!capacity)
+  {
+    idle.addTo(cause, "BarrierCapacity", this->BarrierCapacity, usual->BarrierCapacity);
+  }
+  return idle.notes();
+}
+
+//------------------------------------------------------------------------------
 int vtkTrajectoryCollector::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
@@ -362,6 +396,7 @@ int vtkTrajectoryCollector::RequestData(
       barrier.barrierHeight = this->BarrierHeight;
       barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
       std::vector<CollectorLine> lines;
+      ByProperties by;
       const std::vector<std::string> doubts = filters::doubtsOn(trajectories, mesh);
       std::vector<std::string> notes = doubts;
       if (drawn)
@@ -372,6 +407,7 @@ int vtkTrajectoryCollector::RequestData(
           tellRounding(drawn);
         }
         lines = filters::linesOf(drawn, origin, barrier);
+        by = { true, true };
       }
       if (this->FileName.empty() && !this->LayerName.empty())
       {
@@ -382,7 +418,7 @@ int vtkTrajectoryCollector::RequestData(
       {
         const rockfall::AllowReferences references(this->AllowReferences != 0);
         for (CollectorLine& line : readLines(
-               this->FileName, this->LayerName, trajectories, site.box, origin, barrier, notes))
+               this->FileName, this->LayerName, trajectories, site.box, origin, barrier, by, notes))
         {
           lines.push_back(std::move(line));
         }
@@ -397,6 +433,7 @@ int vtkTrajectoryCollector::RequestData(
       if (!points.empty())
       {
         lines.push_back(lineThrough(points, rocks, origin, barrier));
+        by = { true, true };
       }
       nameApart(lines, notes);
       if (slope)
@@ -404,6 +441,7 @@ int vtkTrajectoryCollector::RequestData(
         filters::askAfterGroundUnder(lines, *slope, notes);
       }
       lookAtBarriers(lines, notes);
+      std::ranges::move(this->IdleNotes(by.height, by.capacity), std::back_inserter(notes));
       rockfall::addParallels(lines, this->ParallelLines, this->ParallelSpacing);
       const Collected collected = collect(trajectories, lines, origin, slope);
       const auto released = std::int64_t(collected.released.size());

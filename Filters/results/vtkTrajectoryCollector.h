@@ -131,6 +131,9 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
+  /// Notes on properties that have no effect. Whether a line has the height and the capacity.
+  std::vector<std::string> IdleNotes(bool height, bool capacity) const;
+
   std::string FileName;
   int AllowReferences = 0;
   bool PrintNotes = true;

@@ -49,15 +49,18 @@ bool CurrentRun::make(std::unique_ptr<KeptRun> run, vtkPolyData* terrain, vtkPol
   run->parameters.threads = run->parameters.threads > 0 ? run->parameters.threads : threads;
   run->prepare(terrain, rocks, ranks);
   const bool first = ranks.rank() == 0;
-  if (run->printNotes && first)
-  {
-    this->tellBefore(*run);
-  }
   // Rocks that are the same in all iterations are known before they run.
   const bool anew = run->ensemble->pushesAnew();
-  if (!anew && run->printNotes && first)
+  if (first)
   {
-    tellPushed(*run->ensemble, run->ensemble->pushed(), ranks);
+    if (run->printNotes)
+    {
+      std::ranges::for_each(run->idle, showNote);
+    }
+    run->tell(std::exchange(run->notes, {})); // on the inputs
+    run->tell(notesBefore(run->slope, run->frame.rocks, run->frame.frequencies, run->parameters));
+    run->tell(
+      anew ? std::vector<std::string>() : pushedNotes(*run->ensemble, run->ensemble->pushed()));
   }
   ++count_;
   if (watched_ && ranks.count() == 1)
@@ -74,12 +77,10 @@ bool CurrentRun::make(std::unique_ptr<KeptRun> run, vtkPolyData* terrain, vtkPol
   {
     return false;
   }
-  if (anew && run->printNotes) // on all ranks
-  {
-    tellPushed(*run->ensemble, pushedOnAll(*run->ensemble, ranks), ranks);
-  }
+  const PushedApart pushed = anew ? pushedOnAll(*run->ensemble, ranks) : PushedApart();
   if (first)
   {
+    run->tell(pushedNotes(*run->ensemble, pushed));
     run->takeResults(sink);
   }
   else
@@ -90,20 +91,6 @@ bool CurrentRun::make(std::unique_ptr<KeptRun> run, vtkPolyData* terrain, vtkPol
   report.finish();
   kept_ = std::move(run);
   return true;
-}
-
-void CurrentRun::tellBefore(const KeptRun& run) const
-{
-  if (!run.parameters.rockRockContact)
-  {
-    tellApart(run.frame.rocks);
-    tellNewNets(run.slope);
-    tellIdleContacts(
-      !run.contactFile.empty(), run.parameters.pushRocksApart, run.parameters.rockCohesion > 0.0);
-  }
-  tellIdleImpulses(run.slope, run.parameters);
-  tellOdd(run.slope, run.frame.rocks, run.frame.frequencies);
-  tellAlike(run.slope, run.frame.rocks, run.parameters.iterations);
 }
 
 void CurrentRun::follow()
@@ -123,16 +110,18 @@ void CurrentRun::follow()
   status_ = how;
   if (kept_->ensemble->pushesAnew())
   {
-    tellPushed(*kept_->ensemble, kept_->ensemble->pushed(), Ranks());
+    kept_->tell(pushedNotes(*kept_->ensemble, kept_->ensemble->pushed()));
   }
   if (made < kept_->ensemble->size() * kept_->ensemble->trajectoriesPerUnit())
   {
     const std::string note = "Rockfall Simulation was " + how;
-    showNotes({ note }, kept_->summary->GetFieldData());
+    showNote(note);
+    kept_->notes.push_back(note);
     // Rocks are made one after the other: those of whole sources may be missing.
     addTexts(kept_->trajectories->GetFieldData(), kRunDoubts,
       std::vector<std::string>{ note + ": shares and frequencies are of these alone" });
   }
+  kept_->writeNotes();
 }
 
 void CurrentRun::forget()

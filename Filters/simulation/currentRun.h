@@ -50,8 +50,6 @@ public:
   int count() const { return count_; } ///< Of runs made.
 
 private:
-  /// Notes on a run that is about to be made.
-  void tellBefore(const KeptRun& run) const;
   /// Looks at the run that goes on, and keeps it when it is over.
   void follow();
 

@@ -28,6 +28,7 @@
 #include <set>
 #include <span>
 #include <tuple>
+#include <utility>
 
 namespace rockfall::filters
 {
@@ -67,16 +68,16 @@ int rankOf(const Ranks& ranks, vtkPolyData* input, const char* name)
 }
 
 /// Blocks that a simulation before had let go cannot go on.
-void tellGone(std::int64_t gone, std::int64_t others, const Ranks& ranks)
+void tellGone(std::int64_t gone, std::int64_t others, std::vector<std::string>& notes)
 {
   if (gone > 0 && others == 0)
   {
     throw DataError("All " + std::to_string(gone) +
       " blocks of the Rocks input had left the slope (State 3) when a simulation left them");
   }
-  if (gone > 0 && ranks.rank() == 0)
+  if (gone > 0)
   {
-    showNote(std::to_string(gone) + " of " + std::to_string(gone + others) +
+    notes.push_back(std::to_string(gone) + " of " + std::to_string(gone + others) +
       " blocks of the Rocks input had left the slope (State 3) and are left out");
   }
 }
@@ -202,6 +203,23 @@ bool KeptRun::takesOver(
   }
   terrain = other.terrain;
   rocks = other.rocks;
+  const auto told = std::pair(idle, ofInputs);
+  if (ranks.count() == 1)
+  {
+    ofInputs = inputNotes(terrainInput->GetFieldData(), rocksInput->GetFieldData());
+  }
+  for (const std::string& note : other.idle)
+  {
+    if (other.printNotes && ranks.rank() == 0 && std::ranges::find(idle, note) == idle.end())
+    {
+      showNote(note);
+    }
+  }
+  idle = other.idle;
+  if (told != std::pair(idle, ofInputs))
+  {
+    this->writeNotes();
+  }
   return true;
 }
 
@@ -262,7 +280,8 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
   {
     // Without the triangles.
     const vtkSmartPointer<vtkFieldData> fields = slopeOf(terrainInput->GetFieldData());
-    bare->SetFieldData(fields ? fields.Get() : terrainInput->GetFieldData());
+    bare->GetFieldData()->ShallowCopy(fields ? fields.Get() : terrainInput->GetFieldData());
+    keepNotes(notesOf(terrainInput->GetFieldData()), bare->GetFieldData());
   }
   if (ranks.rank() == rocksRank)
   {
@@ -271,6 +290,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
   }
   ranks.broadcast(bare, terrainRank);
   ranks.broadcast(released, rocksRank);
+  ofInputs = inputNotes(bare->GetFieldData(), released->GetFieldData());
   copyCoordinateSystem(bare->GetFieldData(), coordinates);
   referToSlope(bare->GetFieldData(), ground);
   ranks.together(
@@ -303,12 +323,12 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
           frame.frequencies.push_back(rock.frequency);
         }
       }
-      tellGone(gone, std::int64_t(frame.rocks.size()), ranks);
+      tellGone(gone, std::int64_t(frame.rocks.size()), notes);
       for (const std::string& note : { takenInstead(released), namesLost(released, frame.rocks) })
       {
-        if (!note.empty() && ranks.rank() == 0)
+        if (!note.empty())
         {
-          showNote(note);
+          notes.push_back(note);
         }
       }
     },
@@ -341,7 +361,28 @@ void KeptRun::takeResults(RunSink& sink)
   const bool look = parameters.endTime < kLeastRun; // at the inputs: what it loses is not told
   tellLost(lost, summary->GetFieldData(), further, printNotes && !look);
   writeLost(lost, trajectories->GetFieldData());
+  const std::vector<std::string> before = std::exchange(notes, notesOf(summary->GetFieldData()));
+  notes.insert(notes.end(), before.begin(), before.end());
+  this->writeNotes();
   this->describe();
+}
+
+void KeptRun::writeNotes()
+{
+  summary->GetFieldData()->RemoveArray("Notes");
+  for (const auto* some : { &notes, &idle, &ofInputs })
+  {
+    keepNotes(*some, summary->GetFieldData());
+  }
+}
+
+void KeptRun::tell(const std::vector<std::string>& further)
+{
+  notes.insert(notes.end(), further.begin(), further.end());
+  if (printNotes)
+  {
+    std::ranges::for_each(further, showNote);
+  }
 }
 
 void KeptRun::describe()
@@ -383,14 +424,9 @@ void KeptRun::readContacts(const Ranks& ranks)
       {
         materials.push_back(rock.material);
       }
-      std::vector<std::string> notes;
       const AllowReferences references(allowReferences);
       const std::vector<RockContactPair> pairs =
         readRockContacts(contactFile, parameters.rockCohesion, materials, contactSheet, &notes);
-      if (printNotes)
-      {
-        std::for_each(notes.begin(), notes.end(), showNote);
-      }
       for (const RockContactPair& pair : pairs)
       {
         first->InsertNextValue(pair.first);

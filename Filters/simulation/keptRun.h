@@ -12,6 +12,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace rockfall::filters
 {
@@ -49,6 +50,9 @@ struct KeptRun : RunData
   vtkNew<vtkFieldData> ground;        ///< The slope as it came.
   std::unique_ptr<Ensemble> ensemble; ///< Of `slope` and the rocks of `frame`.
 
+  /// What the Notes of the table say: its own, of properties that have no effect, of the inputs.
+  std::vector<std::string> notes, idle, ofInputs;
+
   std::vector<Trajectory> whole; ///< Trajectories of `wholeIteration`, with all samples.
   int wholeIteration = -1;
   std::string stateHash; ///< Over the bits of all motion.
@@ -77,6 +81,10 @@ struct KeptRun : RunData
   std::uint64_t contentOfRocks(vtkPolyData* rocksInput, const Ranks& ranks) const;
   /// Takes what a sink was given, perhaps not all of it.
   void takeResults(RunSink& sink);
+  /// Writes the notes into the table.
+  void writeNotes();
+  /// Adds own notes, and shows them if they are to be told.
+  void tell(const std::vector<std::string>& further);
   /// Lets the outputs know in which coordinates they stand, and the trajectories their slope.
   void describe();
   /// Lets go of what only `show` needs.

@@ -122,6 +122,7 @@ void LiveRun::look()
     run_->structures->ShallowCopy(sink_->last.structures);
   }
   run_->describe();
+  run_->writeNotes();
   markRunning(run_->trajectories->GetFieldData());
 }
 

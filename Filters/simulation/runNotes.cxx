@@ -10,6 +10,7 @@
 #include "terrain/Obstacles.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,77 +34,87 @@ std::string statusOf(const LiveRun& live)
                                 : "finished: " + total;
 }
 
-void tellApart(std::span<const Rock> rocks)
+std::vector<std::string> inputNotes(vtkFieldData* terrain, vtkFieldData* rocks)
+{
+  std::vector<std::string> notes = notesOf(terrain);
+  for (std::string& note : notesOf(rocks))
+  {
+    if (std::ranges::find(notes, note) == notes.end())
+    {
+      notes.push_back(std::move(note));
+    }
+  }
+  return notes;
+}
+
+namespace
+{
+
+void noteApart(std::span<const Rock> rocks, std::vector<std::string>& notes)
 {
   const std::int64_t joined = countFaceOnFace(rocks);
   if (joined > 0)
   {
-    showNote("RockRockContact is off: each of the " + std::to_string(rocks.size()) +
+    notes.push_back("RockRockContact is off: each of the " + std::to_string(rocks.size()) +
       " blocks falls as if it were alone, through the others, though " + std::to_string(joined) +
       " of them lie face on face, as the blocks of a rock mass. " +
       "Switch it on for them to hit and push each other");
   }
 }
 
-void tellIdleContacts(bool file, bool push, bool cohesion)
-{
-  std::string idle;
-  for (const auto& [given, name] : { std::pair(file, "RockContactFile"),
-         std::pair(push, "PushRocksApart"), std::pair(cohesion, "RockCohesion") })
-  {
-    idle += given ? (idle.empty() ? "" : ", ") + std::string(name) : "";
-  }
-  if (!idle.empty())
-  {
-    showNote("RockRockContact is off, without which these have no effect: " + idle);
-  }
-}
-
-void tellOdd(
-  const Terrain& terrain, std::span<const Rock> rocks, std::span<const double> frequencies)
-{
-  std::vector<std::string> notes;
-  askAfterRocks(rocks, frequencies, notes);
-  askAfterHeights(terrain, rocks, notes);
-  for (const std::string& note : notes)
-  {
-    showNote(note);
-  }
-}
-
-void tellNewNets(const Terrain& terrain)
+void noteNewNets(const Terrain& terrain, std::vector<std::string>& notes)
 {
   if (const Obstacles* obstacles = terrain.obstacles())
   {
     const std::vector<Barrier>& barriers = obstacles->structures().barriers;
     if (std::any_of(barriers.begin(), barriers.end(), isLoaded))
     {
-      showNote("RockRockContact is off: barriers with residual or fill are new for each block. "
-               "Switch it on for what they hold to load them");
+      notes.emplace_back(
+        "RockRockContact is off: barriers with residual or fill are new for each block. "
+        "Switch it on for what they hold to load them");
     }
   }
 }
 
-void tellIdleImpulses(const Terrain& terrain, const SimulationParameters& parameters)
-{
-  if (parameters.impactResolution == ImpactResolution::Impulse && terrain.givesWay())
-  {
-    showNote("ImpactResolution Impulse has no effect: some of the ground gives way, by scars or by "
-             "friction that hangs on slip, and springs resolve all impacts on such a slope");
-  }
-}
-
-void tellAlike(const Terrain& terrain, std::span<const Rock> rocks, int iterations)
+void noteAlike(const Terrain& terrain, std::span<const Rock> rocks, int iterations,
+  std::vector<std::string>& notes)
 {
   const bool drawn = terrain.draws() ||
     std::any_of(
       rocks.begin(), rocks.end(), [](const Rock& rock) { return rock.uncertainty.any(); });
   if (iterations > 1 && !drawn)
   {
-    showNote("All " + std::to_string(iterations) +
+    notes.push_back("All " + std::to_string(iterations) +
       " iterations are alike: nothing of the slope or of the blocks is drawn. Give DEM to CFE Mesh "
       "a roughness or a deviation, or Rock Blocks an attitude law, for them to differ");
   }
+}
+
+} // namespace
+
+std::vector<std::string> notesBefore(const Terrain& terrain, std::span<const Rock> rocks,
+  std::span<const double> frequencies, const SimulationParameters& parameters)
+{
+  std::vector<std::string> notes;
+  if (!parameters.rockRockContact)
+  {
+    noteApart(rocks, notes);
+    noteNewNets(terrain, notes);
+  }
+  if (terrain.givesWay())
+  {
+    IdleProperties idle;
+    const bool impulse = parameters.impactResolution == ImpactResolution::Impulse;
+    idle.add("ImpactResolution", std::string(impulse ? "Impulse" : "Springs"),
+      std::string("Springs"),
+      "some of the ground gives way, by scars or by friction that hangs on slip, and springs "
+      "resolve all impacts on such a slope");
+    std::ranges::move(idle.notes(), std::back_inserter(notes));
+  }
+  askAfterRocks(rocks, frequencies, notes);
+  askAfterHeights(terrain, rocks, notes);
+  noteAlike(terrain, rocks, parameters.iterations, notes);
+  return notes;
 }
 
 std::vector<std::string> brokenNotes(
@@ -168,17 +179,17 @@ std::vector<std::string> passedNotes(const PassedBarriers& barriers)
   return notes;
 }
 
-void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks)
+std::vector<std::string> pushedNotes(const Ensemble& ensemble, const PushedApart& pushed)
 {
-  if (ranks.rank() != 0 || pushed.rocks == 0)
+  if (pushed.rocks == 0)
   {
-    return;
+    return {};
   }
   const int iterations = ensemble.parameters().iterations;
-  showNote("PushRocksApart moved " + std::string(ensemble.pushesAnew() ? "up to " : "") +
+  return { "PushRocksApart moved " + std::string(ensemble.pushesAnew() ? "up to " : "") +
     std::to_string(pushed.rocks) + " of " + std::to_string(ensemble.trajectoriesPerUnit()) +
     " blocks, by up to " + numberText(pushed.farthest, 4) + " m, in " +
-    std::to_string(pushed.iterations) + " of " + std::to_string(iterations) + " iterations");
+    std::to_string(pushed.iterations) + " of " + std::to_string(iterations) + " iterations" };
 }
 
 } // namespace rockfall::filters

@@ -4,11 +4,16 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "shared/errorReport.h"
 #include "simulation/currentRun.h"
+
+#include "vtkNew.h"
 
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 //------------------------------------------------------------------------------
 std::unique_ptr<rockfall::filters::KeptRun> vtkRockfallSimulation::WantedRun(
@@ -45,7 +50,51 @@ std::unique_ptr<rockfall::filters::KeptRun> vtkRockfallSimulation::WantedRun(
   run->parts.impacts = this->KeepImpacts;
   run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
   run->printNotes = this->PrintNotes;
+  run->idle = this->IdleNotes();
   return run;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkRockfallSimulation::IdleNotes() const
+{
+  rockfall::filters::IdleProperties idle;
+  const vtkNew<vtkRockfallSimulation> usual;
+  const bool references = this->AllowReferences != 0;
+  if (!this->RockRockContact)
+  {
+    const char* cause = "RockRockContact is off, without which these have no effect";
+    idle.addTo(cause, "RockContactFile", this->RockContactFile, usual->RockContactFile);
+    idle.addTo(cause, "RockContactSheet", this->RockContactSheet, usual->RockContactSheet);
+    idle.addTo(cause, "PushRocksApart", this->PushRocksApart, usual->PushRocksApart);
+    idle.addTo(cause, "RockRestitution", this->RockRestitution, usual->RockRestitution);
+    idle.addTo(cause, "RockFrictionAngle", this->RockFrictionAngle, usual->RockFrictionAngle);
+    idle.addTo(cause, "RockCohesion", this->RockCohesion, usual->RockCohesion);
+    idle.addTo(cause, "AllowReferences", references, false);
+  }
+  else if (this->RockContactFile.empty())
+  {
+    const char* why = "there is no RockContactFile";
+    idle.add("RockContactSheet", this->RockContactSheet, usual->RockContactSheet, why);
+    idle.add("AllowReferences", references, false, why);
+  }
+  if (!this->Fragmentation)
+  {
+    using Simulation = vtkRockfallSimulation;
+    static constexpr std::pair<const char*, double Simulation::*> law[] = {
+      { "FragmentationEnergy", &Simulation::FragmentationEnergy },
+      { "FractalDimension", &Simulation::FractalDimension },
+      { "LeastFragment", &Simulation::LeastFragment },
+      { "SurvivalRate", &Simulation::SurvivalRate },
+      { "FragmentationLoss", &Simulation::FragmentationLoss },
+      { "FragmentSpread", &Simulation::FragmentSpread },
+    };
+    for (const auto& [name, value] : law)
+    {
+      idle.addTo("Fragmentation is off, without which these have no effect", name, this->*value,
+        usual->*value);
+    }
+  }
+  return idle.notes();
 }
 
 //------------------------------------------------------------------------------

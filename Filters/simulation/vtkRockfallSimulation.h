@@ -40,6 +40,7 @@
 
 #include <memory> // for the run
 #include <string> // for messages
+#include <vector> // for notes
 
 namespace rockfall
 {
@@ -370,6 +371,7 @@ private:
   int Fail(vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message);
   /// A run of these inputs with the properties, not made yet.
   std::unique_ptr<rockfall::filters::KeptRun> WantedRun(vtkPolyData* terrain, vtkPolyData* rocks);
+  std::vector<std::string> IdleNotes() const; ///< On properties that have no effect.
   void CheckProperties(const rockfall::filters::KeptRun& run) const; ///< Throws ParameterError.
 
   double TimeStep = 0.005;

@@ -3,7 +3,6 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "run/releasePlaces.h"
-#include "shared/errorReport.h"
 
 #include <algorithm>
 #include <cmath>
@@ -201,8 +200,8 @@ std::array<double, 6> steepLine(const Terrain& terrain)
               : levelLine(terrain, middle, Eigen::Vector2d::Zero()); // too small to look at
 }
 
-std::optional<Vec3> placeByDefault(
-  const Terrain& terrain, const double* center, const std::string& what)
+std::optional<Vec3> placeByDefault(const Terrain& terrain, const double* center,
+  const std::string& what, std::vector<std::string>& notes)
 {
   const Vec3 local = Vec3(center[0], center[1], center[2]) - terrain.geometry().origin();
   if (!std::equal(kDefaultCenter.begin(), kDefaultCenter.end(), center) ||
@@ -213,8 +212,9 @@ std::optional<Vec3> placeByDefault(
   const std::array<double, 6> line = steepLine(terrain);
   const Vec3 place(
     0.5 * (line[0] + line[3]), 0.5 * (line[1] + line[4]), std::numeric_limits<double>::quiet_NaN());
-  showNote("Center was left as it is, which is not on this slope: " + what + " is released at " +
-    numberText(place.x()) + ", " + numberText(place.y()) + ", the highest of its steep places");
+  notes.push_back("Center was left as it is, which is not on this slope: " + what +
+    " is released at " + numberText(place.x()) + ", " + numberText(place.y()) +
+    ", the highest of its steep places");
   return place;
 }
 

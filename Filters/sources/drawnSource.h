@@ -28,8 +28,8 @@ std::array<double, 6> steepLine(const Terrain& terrain);
 inline constexpr std::array<double, 3> kDefaultCenter = { 5.0, 50.0, 58.0 };
 /// Where what still has that centre stands on a slope without ground there, m, z unknown: at the
 /// highest of the steep places, which a note says of `what`. Nothing for other centres and slopes.
-std::optional<Vec3> placeByDefault(
-  const Terrain& terrain, const double* center, const std::string& what);
+std::optional<Vec3> placeByDefault(const Terrain& terrain, const double* center,
+  const std::string& what, std::vector<std::string>& notes);
 
 /// The same through the middle of the slope, square to its mean gradient.
 std::array<double, 6> middleLine(const Terrain& terrain);

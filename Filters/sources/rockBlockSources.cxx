@@ -5,11 +5,9 @@
 #include "base/hectare.h"
 #include "base/require.h"
 #include "base/text/numberText.h"
-#include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/terrainFieldData.h"
 #include "sources/drawnSource.h"
-#include "sources/idleProperty.h"
 #include "statistics/frequency.h"
 
 #include "vtkPolyData.h"
@@ -18,7 +16,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -131,7 +128,8 @@ void vtkRockBlockSource::FindDrawn(Sources& sources)
   };
   if (this->Draw == NOTHING && terrain)
   {
-    if (const auto place = rockfall::filters::placeByDefault(*terrain, this->Center, "the block"))
+    if (const auto place =
+          rockfall::filters::placeByDefault(*terrain, this->Center, "the block", sources.notes))
     {
       rockfall::SourceRow& row = sources.rows.emplace_back();
       row.row = 1;
@@ -305,175 +303,5 @@ void vtkRockBlockSource::SetFrequencies(Sources& sources) const
   {
     const std::size_t source = sources.places[k].source;
     sources.rocks[k].frequency = frequencies[source] / double(rocks[source]);
-  }
-}
-
-namespace
-{
-
-/// Mean of the volumes that a normal or log-normal law with its bounds gives, m³.
-double meanOf(const rockfall::VolumeDistribution& law)
-{
-  constexpr int count = 400;
-  double sum = 0.0;
-  for (int k = 0; k < count; ++k)
-  {
-    sum += law.quantile((k + 0.5) / count);
-  }
-  return sum / count;
-}
-
-bool isBell(const rockfall::VolumeDistribution& law)
-{
-  return law.deviation > 0.0 &&
-    (law.law == rockfall::VolumeLaw::Normal || law.law == rockfall::VolumeLaw::LogNormal);
-}
-
-/// Whether the row gives what its law has no use for. `power`: its frequency is by a power law,
-/// which takes bounds and exponent.
-bool hasIdle(const rockfall::SourceRow& row, const rockfall::VolumeDistribution& law, bool power)
-{
-  using rockfall::VolumeLaw;
-  power = power || law.law == VolumeLaw::PowerLaw;
-  return (row.volumeDeviation && law.law != VolumeLaw::Normal && law.law != VolumeLaw::LogNormal) ||
-    (row.volumeExponent && !power) ||
-    ((row.volumeMinimum || row.volumeMaximum) && law.law == VolumeLaw::Fixed && !power);
-}
-
-/// Whether a corner has no ground under it.
-bool reachesBeyond(const rockfall::SourceRow& row, const rockfall::Terrain& terrain)
-{
-  for (const std::vector<rockfall::Vec3>& part : row.parts)
-  {
-    for (const rockfall::Vec3& corner : part)
-    {
-      const rockfall::Vec3 local = corner - terrain.geometry().origin();
-      if (std::isnan(terrain.elevation(local.x(), local.y())))
-      {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-/// Rows of a kind, and words on the first of them.
-struct Rows
-{
-  std::int64_t count = 0, first = 0;
-  std::string words;
-
-  void add(const rockfall::SourceRow& row, const std::string& of)
-  {
-    if (count++ == 0)
-    {
-      first = row.row;
-      words = of;
-    }
-  }
-};
-
-} // namespace
-
-//------------------------------------------------------------------------------
-void vtkRockBlockSource::TellUnused(const Sources& sources, bool hasShape) const
-{
-  if (this->ReleaseHeight > 0.0 &&
-    std::none_of(sources.places.begin(), sources.places.end(),
-      [](const rockfall::ReleasePlace& place) { return place.overGround; }))
-  {
-    rockfall::filters::showNote("ReleaseHeight is " + rockfall::numberText(this->ReleaseHeight) +
-      " m, but has no effect: PlaceOnGround is off, and every block is where its z says");
-  }
-  const bool steep = this->SlopeThreshold > 0.0;
-  if (this->ClusterRadius > 0.0 &&
-    (steep ||
-      std::none_of(sources.rows.begin(), sources.rows.end(),
-        [](const rockfall::SourceRow& row)
-        { return row.geometry == rockfall::SourceGeometry::Point; })))
-  {
-    rockfall::filters::showNote("ClusterRadius is " + rockfall::numberText(this->ClusterRadius) +
-      " m, but has no effect: " +
-      (steep ? "SlopeThreshold is " + rockfall::numberText(this->SlopeThreshold) +
-            " degrees, which spreads the blocks over the steep terrain"
-             : "no source is a point"));
-  }
-  if (hasShape &&
-    std::none_of(sources.rocks.begin(), sources.rocks.end(),
-      [](const rockfall::filters::ReleasedRock& rock)
-      { return rock.shape == rockfall::Shape::File; }))
-  {
-    rockfall::filters::showNote(std::string(rockfall::filters::kShapeInput) +
-      " is connected, but has no effect: no block's shape is \"file\"");
-  }
-  std::vector<std::string> notes;
-  rockfall::filters::tellIdle("LayerName", this->LayerName, "FileName", this->FileName, notes);
-  Rows idle, moved, beyond;
-  rockfall::VolumeDistribution known;
-  double mean = known.mean;
-  for (const rockfall::SourceRow& row : sources.rows)
-  {
-    const rockfall::VolumeDistribution law = sources.maker->volume(row);
-    if (hasIdle(row, law, row.frequencyA || this->PowerLawFrequency > 0.0))
-    {
-      idle.add(row, rockfall::volumeLawName(law.law));
-    }
-    if (isBell(law))
-    {
-      mean = law == known ? mean : meanOf(law);
-      known = law;
-      if (std::abs(mean - law.mean) > 0.1 * law.mean)
-      {
-        moved.add(row,
-          rockfall::numberText(mean, 3) + " m³ instead of " + rockfall::numberText(law.mean, 6));
-      }
-    }
-    if (sources.terrain && reachesBeyond(row, *sources.terrain))
-    {
-      beyond.add(row, "");
-    }
-  }
-  const auto tell = [&](const Rows& rows, const std::string& what)
-  {
-    if (rows.count > 0)
-    {
-      notes.push_back((this->FileName.empty() ? "" : this->FileName + ": ") +
-        std::to_string(rows.count) + " of " + std::to_string(sources.rows.size()) + " sources " +
-        what + (this->FileName.empty() ? "" : ", first row " + std::to_string(rows.first)) +
-        (rows.words.empty() ? "" : ": " + rows.words));
-    }
-  };
-  tell(idle, "have a deviation, bounds or an exponent of volumes that their law does not take");
-  tell(moved, "have volumes of another mean, as bounds cut their law off");
-  tell(beyond, "reach beyond the ground of the slope, on which all their rocks start");
-  std::map<std::int64_t, std::string> names;
-  std::map<std::string, std::int64_t> numbers; // of rows that have a name of their own
-  std::string together, apart;
-  for (const rockfall::filters::ReleasedRock& rock : sources.rocks)
-  {
-    const std::int64_t number = rock.sourceId;
-    const std::string& first = names.try_emplace(number, rock.sourceName).first->second;
-    if (together.empty() && first != rock.sourceName)
-    {
-      together = "Sources \"" + first + "\" and \"" + rock.sourceName + "\" have one number, " +
-        std::to_string(number) + ": tables by source count them as one";
-    }
-    const std::int64_t other = numbers.try_emplace(rock.sourceName, number).first->second;
-    if (apart.empty() && other != number && rock.sourceName != this->SourceName)
-    {
-      apart = "Sources " + std::to_string(other) + " and " + std::to_string(number) +
-        " have one name, \"" + rock.sourceName + "\": tables by source count them apart";
-    }
-  }
-  for (const std::string& note : { together, apart })
-  {
-    if (!note.empty())
-    {
-      notes.push_back(note);
-    }
-  }
-  for (const std::string& note : notes)
-  {
-    rockfall::filters::showNote(note);
   }
 }

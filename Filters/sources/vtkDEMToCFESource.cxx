@@ -15,7 +15,6 @@
 #include "shared/terrainFieldData.h"
 #include "shared/terrainMesh.h"
 #include "shared/withAbort.h"
-#include "sources/idleProperty.h"
 #include "terrain/Terrain.h"
 #include "terrain/plausible.h"
 #include "terrain/presets.h"
@@ -29,7 +28,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 
 vtkStandardNewMacro(vtkDEMToCFESource);
 
@@ -88,17 +87,19 @@ rockfall::SurfaceMaterial vtkDEMToCFESource::MakeMaterial() const
 }
 
 //------------------------------------------------------------------------------
-rockfall::Terrain vtkDEMToCFESource::ReadSlope(std::vector<std::string>& notes) const
+rockfall::Terrain vtkDEMToCFESource::ReadSlope(
+  std::vector<std::string>& notes, bool& contours) const
 {
-  rockfall::ContourOptions contours;
-  contours.cellSize = this->CellSize;
-  contours.elevationField = this->ElevationField;
-  contours.relaxFlats = this->RelaxFlats != 0;
+  rockfall::ContourOptions lines;
+  lines.cellSize = this->CellSize;
+  lines.elevationField = this->ElevationField;
+  lines.relaxFlats = this->RelaxFlats != 0;
   rockfall::RasterOptions raster;
   raster.cellSize = this->CellSize;
   raster.band = this->Band;
   rockfall::RasterSurface surface =
-    rockfall::readSlope(this->FileName, this->LayerName, raster, contours);
+    rockfall::readSlope(this->FileName, this->LayerName, raster, lines);
+  contours = surface.contours;
   notes = std::move(surface.notes);
   return rockfall::Terrain(std::move(surface.geometry), std::move(surface.heights));
 }
@@ -112,60 +113,6 @@ void vtkDEMToCFESource::SetMaximumDisplayCells(vtkIdType cells)
     this->MaximumDisplayCells = cells;
     this->Modified();
     this->SlopeTime = read ? this->GetMTime() : 0; // the slope is still that of the properties
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkDEMToCFESource::TellReplaced(std::vector<std::string>& notes) const
-{
-  using Source = vtkDEMToCFESource;
-  static constexpr std::pair<const char*, double Source::*> properties[] = {
-    { "RestitutionCoefficient", &Source::RestitutionCoefficient },
-    { "RestitutionDeviation", &Source::RestitutionDeviation },
-    { "TangentialRestitution", &Source::TangentialRestitution },
-    { "RestitutionSpeed", &Source::RestitutionSpeed },
-    { "FrictionAngle", &Source::FrictionAngle },
-    { "FrictionAngleDeviation", &Source::FrictionAngleDeviation },
-    { "GroundModulus", &Source::GroundModulus },
-    { "ScarDepthFactor", &Source::ScarDepthFactor },
-    { "ScarRadius", &Source::ScarRadius },
-    { "GroundDensity", &Source::GroundDensity },
-    { "ScarCompaction", &Source::ScarCompaction },
-    { "ScarSpinDrag", &Source::ScarSpinDrag },
-    { "SlipFrictionMin", &Source::SlipFrictionMin },
-    { "SlipFrictionMax", &Source::SlipFrictionMax },
-    { "SlipFrictionGrowth", &Source::SlipFrictionGrowth },
-    { "SlipFrictionDecay", &Source::SlipFrictionDecay },
-    { "RollingResistance", &Source::RollingResistance },
-    { "GroundDeviation", &Source::GroundDeviation },
-    { "GroundDeviationLength", &Source::GroundDeviationLength },
-    { "RoughnessMean", &Source::RoughnessMean },
-    { "RoughnessDeviation", &Source::RoughnessDeviation },
-    { "RoughnessLength", &Source::RoughnessLength },
-    { "ObstacleHeight70", &Source::ObstacleHeight70 },
-    { "ObstacleHeight20", &Source::ObstacleHeight20 },
-    { "ObstacleHeight10", &Source::ObstacleHeight10 },
-  };
-  const vtkNew<Source> usual;
-  const auto preset = rockfall::presetValues(this->Preset);
-  // The window fills the panel's fields with the preset's own numbers.
-  const auto isPresets = [&](const char* name, double value)
-  {
-    const auto of = std::find_if(
-      preset.begin(), preset.end(), [&](const auto& entry) { return entry.first == name; });
-    return of != preset.end() && std::abs(of->second - value) <= 1e-9 * std::abs(value);
-  };
-  std::string list;
-  for (const auto& [name, value] : properties)
-  {
-    if (this->*value != usual->*value && !isPresets(name, this->*value))
-    {
-      list += (list.empty() ? "" : ", ") + std::string(name);
-    }
-  }
-  if (!list.empty())
-  {
-    notes.push_back("The Preset replaces what these properties say: " + list);
   }
 }
 
@@ -193,9 +140,10 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
     roughness = rockfall::groundPresets()[std::size_t(this->Preset) - 1].roughness;
   }
   rockfall::require(this->CellSize >= 0.0, "CellSize", this->CellSize, " m", "0 or positive");
+  bool contours = false;
   rockfall::Terrain slope = this->FileName.empty()
     ? rockfall::makeBiplanarSlope(this->CellSize > 0.0 ? this->CellSize : testSlopeCellSize)
-    : this->ReadSlope(notes);
+    : this->ReadSlope(notes, contours);
   slope = rockfall::Terrain(slope, material, roughness);
   slope.setDiagonal(rockfall::cellDiagonalFrom(this->CellDiagonal));
   const rockfall::DeviationPer chosen = rockfall::deviationPerFrom(this->DeviationPer);
@@ -218,29 +166,9 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
   askAfterGround(slope, notes);
   if (this->Preset > 0)
   {
-    this->TellReplaced(notes);
     rockfall::groundPresets()[std::size_t(this->Preset) - 1].warn(notes);
   }
-  using rockfall::filters::tellIdle;
-  tellIdle("LayerName", this->LayerName, "FileName", this->FileName, notes);
-  tellIdle("ElevationField", this->ElevationField, "FileName", this->FileName, notes);
-  tellIdle("EmbankmentLayerName", this->EmbankmentLayerName, "EmbankmentFile", this->EmbankmentFile,
-    notes);
-  tellIdle("TreeLayerName", this->TreeLayerName, "TreeFile", this->TreeFile, notes);
-  tellIdle("BarrierLayerName", this->BarrierLayerName, "BarrierFile", this->BarrierFile, notes);
-  for (const auto& [name, value] : { std::pair("RestitutionLayerName", &this->RestitutionLayerName),
-         std::pair("RestitutionField", &this->RestitutionField) })
-  {
-    tellIdle(name, *value, "RestitutionLayer", this->RestitutionLayer, notes);
-  }
-  for (const auto& [name, value] : { std::pair("JointLayerName", &this->JointLayerName),
-         std::pair("JointField", &this->JointField) })
-  {
-    tellIdle(name, *value, "JointLayer", this->JointLayer, notes);
-  }
-  tellIdle("RestitutionTableSheet", this->RestitutionTableSheet, "RestitutionTable",
-    this->RestitutionTable, notes);
-  tellIdle("JointTableSheet", this->JointTableSheet, "JointTable", this->JointTable, notes);
+  std::ranges::move(this->IdleNotes(contours), std::back_inserter(notes));
   if (this->Preset == 0 && !material.yielding.yields() && slope.restitutionClasses().count() == 0)
   {
     notes.emplace_back(

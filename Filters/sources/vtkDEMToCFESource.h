@@ -34,6 +34,10 @@ namespace rockfall
 {
 class Terrain;
 struct SurfaceMaterial;
+namespace filters // VTK's wrappers read no nested name
+{
+class IdleProperties;
+}
 }
 
 class ROCKFALLFILTERS_EXPORT vtkDEMToCFESource : public vtkPolyDataAlgorithm
@@ -446,9 +450,10 @@ protected:
 
 private:
   rockfall::SurfaceMaterial MakeMaterial() const;
-  rockfall::Terrain ReadSlope(std::vector<std::string>& notes) const;
-  /// A note on properties that the Preset replaces, though they are not as they come.
-  void TellReplaced(std::vector<std::string>& notes) const;
+  rockfall::Terrain ReadSlope(std::vector<std::string>& notes, bool& contours) const;
+  /// Notes on properties that were set and have no effect. `contours`: FileName has lines.
+  std::vector<std::string> IdleNotes(bool contours) const;
+  void FindIdleGround(rockfall::filters::IdleProperties& idle) const;
   std::shared_ptr<const rockfall::Terrain> MakeSlope(std::vector<std::string>& notes);
 
   std::string FileName;

@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 vtkStandardNewMacro(vtkDrawnStructure);
@@ -107,6 +108,47 @@ void vtkDrawnStructure::CheckProperties() const
   requirePositive(this->SideSlope, "SideSlope", "m across per m down", true);
   requirePositive(this->StemsPerHectare, "StemsPerHectare", "stems");
   requirePositive(this->Diameter, "Diameter", "cm");
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkDrawnStructure::IdleNotes() const
+{
+  rockfall::filters::IdleProperties idle;
+  const vtkNew<vtkDrawnStructure> usual;
+  const char* kinds[] = { "net", "embankment", "forest" };
+  const std::string cause =
+    std::string("The Kind is ") + kinds[this->Kind] + ", which these properties say nothing of";
+  const auto tell = [&](const char* name, double vtkDrawnStructure::*value)
+  { idle.addTo(cause, name, this->*value, usual->*value); };
+  if (this->Kind == FOREST)
+  {
+    tell("Height", &vtkDrawnStructure::Height);
+  }
+  else
+  {
+    tell("StemsPerHectare", &vtkDrawnStructure::StemsPerHectare);
+    tell("Diameter", &vtkDrawnStructure::Diameter);
+    tell("TreeHeight", &vtkDrawnStructure::TreeHeight);
+    idle.addTo(cause, "TreesBreak", this->TreesBreak, usual->TreesBreak);
+  }
+  if (this->Kind != EMBANKMENT)
+  {
+    tell("CrestWidth", &vtkDrawnStructure::CrestWidth);
+    tell("SideSlope", &vtkDrawnStructure::SideSlope);
+  }
+  if (this->Kind != NET)
+  {
+    tell("Capacity", &vtkDrawnStructure::Capacity);
+    tell("Braking", &vtkDrawnStructure::Braking);
+    idle.addTo(cause, "Wears", this->Wears, usual->Wears);
+    tell("Residual", &vtkDrawnStructure::Residual);
+    tell("Fill", &vtkDrawnStructure::Fill);
+  }
+  else if (!this->Wears)
+  {
+    idle.add("Residual", this->Residual, usual->Residual, "Wears is off", " %");
+  }
+  return idle.notes();
 }
 
 //------------------------------------------------------------------------------
@@ -220,6 +262,7 @@ int vtkDrawnStructure::RequestData(
         fields->AddArray(old->GetAbstractArray(k));
       }
       filters::writeStructures(*terrain, fields);
+      std::ranges::move(this->IdleNotes(), std::back_inserter(notes));
       filters::showNotes(notes, fields);
       output->SetFieldData(fields);
       vtkNew<vtkPolyData> shown;

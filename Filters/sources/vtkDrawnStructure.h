@@ -14,6 +14,7 @@
 #include "listProperty.h"
 #include "vtkPolyDataAlgorithm.h"
 
+#include <string> // for notes
 #include <vector> // for points
 
 class ROCKFALLFILTERS_EXPORT vtkDrawnStructure : public vtkPolyDataAlgorithm
@@ -146,7 +147,8 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
-  void CheckProperties() const; ///< Throws ParameterError.
+  void CheckProperties() const;               ///< Throws ParameterError.
+  std::vector<std::string> IdleNotes() const; ///< On properties that have no effect.
 
   int Kind = NET;
   std::vector<double> Points; ///< x, y, z of each in turn.

@@ -18,6 +18,7 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
@@ -32,10 +33,10 @@ namespace
 using rockfall::filters::vec3;
 
 /// A closed surface as it is: a mass that its hull stood for would be another one.
-rockfall::Polyhedron readMass(const std::string& fileName, vtkPolyData* surface)
+rockfall::Polyhedron readMass(
+  const std::string& fileName, vtkPolyData* surface, std::vector<std::string>& notes)
 {
   rockfall::filters::requireOneShape("MassFileName", fileName, surface != nullptr);
-  std::vector<std::string> notes;
   if (fileName.empty() && !surface)
   {
     throw rockfall::FileError("MassFileName is empty, and nothing is connected to the Shape input: "
@@ -43,14 +44,9 @@ rockfall::Polyhedron readMass(const std::string& fileName, vtkPolyData* surface)
   }
   try
   {
-    rockfall::Polyhedron mass = surface ? rockfall::shapeOf(rockfall::filters::meshOf(surface),
-                                            rockfall::filters::kShapeInput, true, notes)
-                                        : rockfall::readShape(fileName, true, notes);
-    for (const std::string& note : notes)
-    {
-      rockfall::filters::showNote(note);
-    }
-    return mass;
+    return surface ? rockfall::shapeOf(rockfall::filters::meshOf(surface),
+                       rockfall::filters::kShapeInput, true, notes)
+                   : rockfall::readShape(fileName, true, notes);
   }
   catch (const rockfall::GeometryError& error)
   {
@@ -118,6 +114,31 @@ void vtkJointedRockMass::SetJointSet(int index, double dip, double dipDirection,
 }
 
 //------------------------------------------------------------------------------
+std::vector<std::string> vtkJointedRockMass::IdleNotes() const
+{
+  rockfall::filters::IdleProperties idle;
+  const vtkNew<vtkJointedRockMass> usual;
+  if (!this->PlaceOnGround)
+  {
+    idle.add("ReleaseHeight", this->ReleaseHeight, usual->ReleaseHeight,
+      "PlaceOnGround is off, so the rock mass is where it is given", " m");
+  }
+  if (this->MassShape == BOX)
+  {
+    idle.add("MassFileName", this->MassFileName, usual->MassFileName, "MassShape is 0 (box)");
+  }
+  else
+  {
+    const char* cause = "MassShape is 1 (from file), where these have no effect";
+    idle.addTo(cause, "Center", vec3(this->Center), vec3(usual->Center));
+    idle.addTo(cause, "Lengths", vec3(this->Lengths), vec3(usual->Lengths));
+    idle.addTo(cause, "Orientation", vec3(this->Orientation), vec3(usual->Orientation));
+  }
+  this->FindIdleOfMaterial(idle);
+  return idle.notes();
+}
+
+//------------------------------------------------------------------------------
 void vtkJointedRockMass::MakeBlocks(
   vtkPolyData* terrainInput, vtkPolyData* surface, vtkPolyData* blocks)
 {
@@ -133,12 +154,8 @@ void vtkJointedRockMass::MakeBlocks(
   }
   require(this->ReleaseHeight >= 0.0 && std::isfinite(this->ReleaseHeight), "ReleaseHeight",
     this->ReleaseHeight, " m", "finite and at least 0");
-  if (this->ReleaseHeight > 0.0 && !this->PlaceOnGround)
-  {
-    filters::showNote("ReleaseHeight is " + numberText(this->ReleaseHeight) +
-      " m, but has no effect: PlaceOnGround is off, so the rock mass is where it is given");
-  }
   this->CheckSeed();
+  std::vector<std::string> notes = this->IdleNotes();
 
   // About its centroid, where the numbers are small.
   Polyhedron mass;
@@ -146,8 +163,9 @@ void vtkJointedRockMass::MakeBlocks(
   bool onGround = this->PlaceOnGround;
   if (this->MassShape == BOX)
   {
-    if (const auto place =
-          terrain ? filters::placeByDefault(*terrain, this->Center, "the mass") : std::nullopt)
+    if (const auto place = terrain
+        ? filters::placeByDefault(*terrain, this->Center, "the mass", notes)
+        : std::nullopt)
     {
       centre = *place;
       centre.z() = this->Center[2];
@@ -161,7 +179,7 @@ void vtkJointedRockMass::MakeBlocks(
   }
   else if (this->MassShape == FROM_FILE)
   {
-    mass = readMass(this->MassFileName, surface);
+    mass = readMass(this->MassFileName, surface, notes);
     centre = mass.integrals().centroid;
     mass = mass.centred();
   }
@@ -235,15 +253,16 @@ void vtkJointedRockMass::MakeBlocks(
     ->InsertNextValue(cut.sliverVolume);
   if (surface && this->MassShape != FROM_FILE)
   {
-    filters::showNote(
+    notes.push_back(
       std::string(filters::kShapeInput) + " is connected, but has no effect: MassShape is 0 (box)");
   }
   if (cut.slivers > 0)
   {
-    filters::showNote("The rock mass is cut into " + std::to_string(rocks.size()) + " blocks; " +
+    notes.push_back("The rock mass is cut into " + std::to_string(rocks.size()) + " blocks; " +
       std::to_string(cut.slivers) + " slivers of " + numberText(cut.sliverVolume) +
       " m³ in all are " + (how.slivers == rockfall::SliverRule::Drop ? "left out" : "among them"));
   }
+  filters::showNotes(notes, blocks->GetFieldData());
 }
 
 //------------------------------------------------------------------------------

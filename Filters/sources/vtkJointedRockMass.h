@@ -107,6 +107,8 @@ protected:
   void MakeBlocks(vtkPolyData* terrain, vtkPolyData* shape, vtkPolyData* blocks) override;
 
 private:
+  std::vector<std::string> IdleNotes() const; ///< On properties that have no effect.
+
   int MassShape = BOX;
   std::string MassFileName;
   std::vector<std::array<double, 6>> JointSets;

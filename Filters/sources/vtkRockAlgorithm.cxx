@@ -1,5 +1,6 @@
 #include "vtkRockAlgorithm.h"
 
+#include "base/RockMaterial.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/streamingPieces.h"
@@ -57,6 +58,10 @@ int vtkRockAlgorithm::RequestData(
       terrainInput.require();
       shapeInput.require();
       vtkNew<vtkPolyData> blocks;
+      if (terrain)
+      {
+        keepNotes(notesOf(terrain->GetFieldData()), blocks->GetFieldData()); // to the simulation
+      }
       this->MakeBlocks(terrain, shape, blocks);
       vtkPolyData::GetData(outputVector)->ShallowCopy(blocks);
       return 1;
@@ -70,6 +75,26 @@ void vtkRockAlgorithm::CheckSeed() const
   {
     rockfall::filters::refuseProperty("Seed", this->Seed, "at least 0");
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkRockAlgorithm::FindIdleOfMaterial(rockfall::filters::IdleProperties& idle) const
+{
+  const auto materials = rockfall::rockMaterials();
+  if (this->Material < 1 || this->Material > int(materials.size()))
+  {
+    return;
+  }
+  const rockfall::RockMaterial& material = materials[std::size_t(this->Material) - 1];
+  const rockfall::filters::RockDefaults usual;
+  const auto tell = [&](const char* name, double value, double otherwise, double ofMaterial)
+  {
+    idle.addTo("The Material replaces what these properties say", name, value,
+      value == ofMaterial ? value : otherwise);
+  };
+  tell("Density", this->Density, usual.density, material.density);
+  tell("YoungModulus", this->YoungModulus, usual.youngModulus, material.youngModulus);
+  tell("PoissonRatio", this->PoissonRatio, usual.poissonRatio, material.poissonRatio);
 }
 
 //------------------------------------------------------------------------------

@@ -18,6 +18,14 @@
 
 #include <string> // for names
 
+namespace rockfall
+{
+namespace filters // VTK's wrappers read no nested name
+{
+class IdleProperties;
+}
+}
+
 class ROCKFALLFILTERS_EXPORT vtkRockAlgorithm : public vtkPolyDataAlgorithm
 {
 public:
@@ -166,6 +174,8 @@ protected:
   virtual void MakeBlocks(vtkPolyData* terrain, vtkPolyData* shape, vtkPolyData* blocks) = 0;
   /// Throws ParameterError unless Seed is at least 0.
   void CheckSeed() const;
+  /// Numbers that a Material replaces.
+  void FindIdleOfMaterial(rockfall::filters::IdleProperties& idle) const;
 
   double Center[3] = { 5.0, 50.0, 58.0 };
   double Lengths[3] = { 1.0, 1.0, 1.0 };

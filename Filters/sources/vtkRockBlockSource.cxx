@@ -185,8 +185,8 @@ void vtkRockBlockSource::MakeBlocks(vtkPolyData* terrain, vtkPolyData* surface, 
   }
   const std::vector<std::string>& made = sources.maker->notes();
   sources.notes.insert(sources.notes.end(), made.begin(), made.end());
+  this->FindNotes(sources, surface != nullptr);
   rockfall::filters::showNotes(sources.notes, blocks->GetFieldData());
-  this->TellUnused(sources, surface != nullptr);
 }
 
 //------------------------------------------------------------------------------

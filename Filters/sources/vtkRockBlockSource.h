@@ -397,8 +397,10 @@ private:
   void MakeRocks(Sources& sources);
   /// The sources that are drawn, or Center.
   void FindDrawn(Sources& sources);
-  /// Notes on lengths and on a shape that are given and that no block has a use for.
-  void TellUnused(const Sources& sources, bool hasShape) const;
+  /// Notes on properties and on a shape that have no effect, and on rows that are odd.
+  void FindNotes(Sources& sources, bool hasShape) const;
+  void FindIdleOfPlace(const Sources& sources, rockfall::filters::IdleProperties& idle) const;
+  void FindIdleOfRows(const Sources& sources, rockfall::filters::IdleProperties& idle) const;
   void CheckFrequencies() const; ///< Of the properties.
   /// Of all rocks of a source, 1/a; NaN if it is not known.
   double FrequencyOf(const Sources& sources, std::size_t number) const;

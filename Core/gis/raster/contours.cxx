@@ -197,6 +197,7 @@ RasterSurface readSlope(const std::string& fileName, const std::string& layer,
   RasterSurface surface =
     content.vector ? readContours(fileName, lines) : readRaster(content.raster, raster);
   surface.notes.insert(surface.notes.begin(), notes.begin(), notes.end());
+  surface.contours = content.vector;
   return surface;
 }
 

@@ -24,6 +24,7 @@ struct RasterSurface
   // the file says what its heights refer to; empty for local metres.
   GridGeometry geometry;          ///< `crs`: see above.
   std::vector<double> heights;    ///< NaN where the file has nodata.
+  bool contours = false;          ///< The file has contour lines.
   std::vector<std::string> notes; ///< One sentence per thing that was done to the data.
 };
 
