@@ -135,6 +135,15 @@ for name in stones:
 # Only some laws have a deviation.
 assert rocks.GetProperty("VolumeLaw").Available[2:4] == ["Normal", "Log-normal"]
 assert decorators(rocks, "VolumeDeviation", "visibility") == [("VolumeLaw", "2 3", "0")]
+# Bounds and exponent are those of a frequency by a power law, too.
+for name, laws in (("VolumeMinimum", ("0", "1")), ("VolumeMaximum", ("0", "1")), ("VolumeExponent", ("4", "0"))):
+    composite = rocks.GetProperty(name).SMProperty.GetHints().FindNestedElementByName("PropertyWidgetDecorator")
+    either = composite.FindNestedElementByName("Expression")
+    assert composite.GetAttribute("type") == "CompositeDecorator" and either.GetAttribute("type") == "or", name
+    assert [(d.GetAttribute("property"), d.GetAttribute("value"), d.GetAttribute("inverse") or "0", d.GetAttribute("mode"))
+            for d in map(either.GetNestedElement, range(either.GetNumberOfNestedElements()))] == [
+                ("VolumeLaw", *laws, "visibility"), ("PowerLawFrequency", "0", "1", "visibility")], name
+assert decorators(collector, "ParallelSpacing", "enabled_state") == [("ParallelLines", "0", "1")]
 # Tables open no view of their own, but for charts and the one that is all there is to see of its filter;
 # impacts hide the paths, and the raster of a map lies under the slope.
 for proxy, ports in ((simulation, {"2", "3"}), (hazard, {"0"}), (collector, {"1"}), (merged, {"1", "2"})):
