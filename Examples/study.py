@@ -27,7 +27,7 @@ study.json, all paths from where it stands:
 Simulation and Trajectory Collector. "map", "lines" and "until" may be left out, and then there are none; with
 "trajectories": false those are not kept. Files count by their content, not by their name. FOLDER gets
 
-    manifest.json               what the study is: program, files, all values in force
+    manifest.json               what the study is: program, files, all values in force, and notes
     chunk-00000.npz             table of the first chunk, and so on
     chunk-00000.vtp             its trajectories
     chunk-00000.passages        what the map is made of
@@ -63,7 +63,7 @@ import enough
 import schema
 import standing
 import wholefile
-from combine import RESULTS, chunk_iterations, columns_of, combine
+from combine import MANIFEST, RESULTS, chunk_iterations, columns_of, combine, input_notes, kept_notes
 from identity import FILES, Inputs, differences, early, identity, told, values, version
 from together import from_first_rank, make, output, ranks, refuse, say, write_by
 from wholefile import write_npz, write_polydata, write_text
@@ -132,6 +132,7 @@ class Pipeline:
         self.slope = make(DEMtoCFEMesh, "terrain", study["terrain"])
         self.rocks = make(RockBlocks, "rocks", {"Terrain": self.slope, **study["rocks"]})
         self.standing = None
+        self.notes = []  # on the inputs, on the first rank
         self.simulation = make(RockfallSimulation, "simulation", {
             "KeepImpacts": int(bool(study["terrain"].get("EmbankmentFile"))), **study["simulation"], "Terrain": self.slope,
             "Rocks": self.rocks, "NumberOfThreads": threads})
@@ -166,14 +167,15 @@ class Pipeline:
         simulation.EndTime = min(simulation.EndTime, simulation.TimeStep, LOOK)
         simulation.PrintProgress = 0
         UpdatePipeline(0.0, simulation)
-        output(simulation, 3)
+        told = kept_notes(output(simulation, 3))
         if self.passages:
             path = os.path.join(folder, ".unfinished-check.passages")
             write_by(self.passages, path)
             from_first_rank(lambda: os.remove(path))
         if self.crossings:
             UpdatePipeline(proxy=self.crossings)
-            output(self.crossings)
+            told += kept_notes(output(self.crossings))
+        self.notes = from_first_rank(lambda: input_notes(told, self.study["iterations"]))
         if any(self.study["terrain"].get(kind + "File") for kind in ("Embankment", "Tree", "Barrier")):
             paths = simulation.TrajectoryOutput in ("Thinned", "Full")
             self.standing = standing.Standing(self.slope, simulation, paths, bool(simulation.KeepImpacts))
@@ -219,7 +221,7 @@ class Pipeline:
 
 
 def manifest_of(chosen):
-    return os.path.join(chosen.folder, "manifest.json")
+    return os.path.join(chosen.folder, MANIFEST)
 
 
 def begin(chosen):
@@ -398,7 +400,8 @@ def main():
         if from_first_rank(lambda: is_enough(until, stems[-1])):
             break
     tell_precision(chosen, until)
-    combine(study, chosen.folder, stems, sum(wanted[:len(stems)]), pipeline.standing and pipeline.standing.things)
+    combine(study, chosen.folder, stems, sum(wanted[:len(stems)]), pipeline.standing and pipeline.standing.things,
+            pipeline.notes)
     if count > there:
         tell_session(chosen, begun, count - there)
     say(f"Done: {chosen.folder}")

@@ -192,6 +192,9 @@ class Study:
         self.program = field(path, self.manifest, "program", str)
         self.values = field(path, self.manifest, "values", dict)
         self.files = field(path, self.manifest, "files", dict)
+        self.notes = self.manifest.get("notes", [])  # a study of an earlier version has none
+        if not isinstance(self.notes, list) or not all(isinstance(note, str) for note in self.notes):
+            raise Bad(f"{path}: \"notes\" is {shown(self.notes)}, it must be a list of texts")
         self.name = os.path.basename(field(path, self.manifest, "study", str))
         self.inputs = self.read_inputs(path)
         self.slope = Slope(self.properties("terrain"))

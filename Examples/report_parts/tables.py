@@ -380,7 +380,7 @@ def fixed_volumes(study):
 
 def notes(study):
     """What a reader should know before the numbers."""
-    made = list(dict.fromkeys(re.sub(r"(?<!\S)/\S*/", "", note) for note in study.slope.notes))  # files by their names
+    made = list(dict.fromkeys(re.sub(r"(?<!\S)/\S*/", "", note) for note in study.slope.notes + study.notes))  # files by their names
     rocks_, total = study.rocks, len(study.rocks)
     least = study.given.get("map") or {}
     if least.get("LeastReach"):

@@ -24,9 +24,12 @@ COUNTED = re.compile(r"(\d+) of (\d+) rocks (.*)", re.DOTALL)  # how the Core sa
 BROKE = re.compile(r"\d+ of \d+ rocks (broke in impacts of \S+ J/m³ or more)"
                    r"(?:, into \d+ pieces in all; \S+ %( .*)|:.*)", re.DOTALL)
 STILL = re.compile(r"(None of )\d+( rocks .*)", re.DOTALL)
+PUSHED = re.compile(r"PushRocksApart moved (?:up to )?(\d+) of (\d+) blocks, by up to (\S+) m, in (\d+) of \d+ iterations")
+ALIKE = re.compile(r"^All \d+ iterations are alike")
 ORDER = ("Iteration", "RockId", "BlockId", "Piece", "Line", "Passing")  # of crossings; Piece where rocks break
 # All that the tables of lines and the design of barriers are made of; of millions of crossings no more is in memory.
 COUNTED_BY = (*ORDER, "KineticEnergy", "HeightOverGround", "Velocity", "TopHeight", "SourceId", "Frequency")
+MANIFEST = "manifest.json"  # what a study is
 RESULTS = "results.json"  # not study.json, which is what a study is called that goes in
 
 
@@ -44,6 +47,12 @@ def columns_of(fields):
             for n, values in enumerate(vtk_to_numpy(array).T):
                 columns[array.GetName() + "XYZ"[n]] = values.copy()
     return columns
+
+
+def kept_notes(data):
+    """The field array Notes of what a filter made."""
+    notes = data.GetFieldData().GetAbstractArray("Notes")
+    return [notes.GetValue(k) for k in range(notes.GetNumberOfValues())] if notes else []
 
 
 def refuse_damaged(path, why=""):
@@ -112,6 +121,12 @@ def combine_tables(folder, stems):
     return hashes, notes_of_all(notes, rocks, broken)
 
 
+def input_notes(told, iterations):
+    """Of what a look at the inputs tells, the notes on these and on properties, as of a study of so many iterations."""
+    return [ALIKE.sub(f"All {iterations} iterations are alike", note) for note in told
+            if not any(of_run.fullmatch(note) for of_run in (COUNTED, BROKE, STILL, PUSHED))]
+
+
 def notes_of_all(notes, rocks, broken=()):
     """The runs' notes on whom they lost, of each chunk, as those of one run of so many rocks."""
     counts, broke, lost = {}, "", ""
@@ -131,6 +146,12 @@ def notes_of_all(notes, rocks, broken=()):
     still = [found.groups() for of_chunk in notes for note in of_chunk if (found := STILL.fullmatch(note))]
     if still and len(still) == len(notes):
         texts.append(f"{still[0][0]}{rocks}{still[0][1]}")
+    pushed = [found.groups() for of_chunk in notes for note in of_chunk if (found := PUSHED.fullmatch(note))]
+    if pushed:
+        moved, blocks, _, _ = max(pushed, key=lambda one: int(one[0]))
+        farthest = max((one[2] for one in pushed), key=float)
+        texts.append(f"PushRocksApart moved up to {moved} of {blocks} blocks, by up to {farthest} m, "
+                     f"in {sum(int(one[3]) for one in pushed)} iterations")
     return texts
 
 
@@ -172,7 +193,7 @@ def columns_of_no_use(points):
 
 
 def combine_crossings(folder, stems, merge, design):
-    """Crossings, and the tables of all of them. `merge` and `design` are the filters themselves: no
+    """Crossings, and the tables of all of them; gives the notes on these. `merge` and `design` are the filters themselves: no
     other rank takes part, and their inputs have no proxies."""
     for stem in stems:
         points = crossings_of(stem)
@@ -196,6 +217,7 @@ def combine_crossings(folder, stems, merge, design):
             ("design.csv", "design_classes.csv", "design_sources.csv", "design_places.csv")):
         write_table(os.path.join(folder, name),
                     [columns_of(design.GetOutputDataObject(port).GetRowData())])
+    return kept_notes(design.GetOutputDataObject(0))
 
 
 def refuse_passages(stems, error):
@@ -205,31 +227,33 @@ def refuse_passages(stems, error):
             refuse_damaged(stem + ".passages")
 
 
-def tell(notes, of_map):
+def tell(notes, told):
     """The study's notes, but for those that its map has told of the same rocks."""
-    told = of_map and of_map.GetAbstractArray("Notes")
-    told = {told.GetValue(k) for k in range(told.GetNumberOfValues())} if told else ()
     for note in notes:
         if note not in told:
             say(note)
 
 
-def combine(study, folder, stems, iterations, structures=None):
-    """The results of the whole study, from the files of its chunks alone; `structures` are what stands on the slope."""
+def combine(study, folder, stems, iterations, structures=None, of_inputs=()):
+    """The results of the whole study, from the files of its chunks alone; `structures` are what stands on the slope,
+    `of_inputs` notes on the inputs. The manifest gets all notes, for who reads the results later."""
     hashes, notes = from_first_rank(lambda: combine_tables(folder, stems))
+    further = []
     if "map" not in study:
-        tell(notes, None)
+        tell(notes, ())
     if "lines" in study:
         merge = servermanager.filters.MergeCollectors().GetClientSideObject()
         design = make(servermanager.filters.BarrierDesign, "lines", schema.shared_out("lines", study["lines"])[1])
-        from_first_rank(lambda: combine_crossings(folder, stems, merge, design.GetClientSideObject()))
+        further += from_first_rank(lambda: combine_crossings(folder, stems, merge, design.GetClientSideObject()))
     if "map" in study:
         hazard = make(HazardPassageReader, "map", {
             **schema.shared_out("map", study["map"])[1], "FileNames": [stem + ".passages" for stem in stems]})
         UpdatePipeline(proxy=hazard)
-        error = hazard.GetClientSideObject().GetOutputDataObject(0).GetFieldData().GetAbstractArray("Error")
+        made = hazard.GetClientSideObject().GetOutputDataObject(0)
+        error = made.GetFieldData().GetAbstractArray("Error")
         from_first_rank(lambda: error and refuse_passages(stems, error.GetValue(0)))
-        tell(notes, hazard.GetClientSideObject().GetOutputDataObject(0).GetFieldData())
+        tell(notes, kept_notes(made))
+        further += kept_notes(made)
         writer = servermanager.writers.HazardMapWriter(Input=hazard)
         write_by(writer, os.path.join(folder, "hazard.tif"))
         cells = output(hazard).GetCellData()
@@ -240,6 +264,9 @@ def combine(study, folder, stems, iterations, structures=None):
         from_first_rank(lambda: standing.combine(study, folder, stems, structures))
 
     def finish():
+        manifest = os.path.join(folder, MANIFEST)
+        write_text(manifest, json.dumps({
+            **schema.load(manifest), "notes": list(dict.fromkeys([*of_inputs, *notes, *further]))}, indent=1) + "\n")
         write_text(os.path.join(folder, RESULTS), json.dumps(
             {"iterations": iterations, "chunks": hashes,
              "whole": hashlib.sha256("".join(hashes).encode()).hexdigest()}, indent=1) + "\n")

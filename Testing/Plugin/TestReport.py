@@ -35,8 +35,8 @@ write_text("net.csv", 'WKT,name,height,capacity\n"LINESTRING(700048 4000030,7000
 write_text("stems.csv", 'WKT,diameter,height\n"LINESTRING(700200 4000180,700208 4000180)",40,\nPOINT(700250 4000185),30,20\n')
 study = {
     "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)", "BarrierFile": "net.csv", "TreeFile": "stems.csv"},
-    "rocks": {"FileName": "rocks.csv"},
-    "simulation": {"EndTime": 6.0, "Seed": 77, "TrajectoryOutput": "Thinned"}, "map": {"CellSize": 5.0, "LeastReach": 0.001},
+    "rocks": {"FileName": "rocks.csv", "Lengths": [1.0, 2.0, 3.0]},
+    "simulation": {"EndTime": 6.0, "Seed": 77, "TrajectoryOutput": "Thinned", "FragmentSpread": 10.0}, "map": {"CellSize": 5.0, "LeastReach": 0.001},
     "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0, "ParallelLines": 2, "ParallelSpacing": -10.0},
     "iterations": 4, "chunk": 2}
 
@@ -79,6 +79,9 @@ assert lost > 3
 for word in ("WGS 84 / UTM zone 16N", "preset Talus (assumed): Lu et al. (2019)", "seed 77", "31 × 21 nodes every 10 m",
              "12 rocks, 3 releases in 4 iterations", "4 m high, capacity 1 000 kJ", "Office", "stems that lie 1, diameter 40 to 40 cm; energy that breaks one 194 kJ", "stems 1 on",
              "RockfallDDA", "gives no frequency of release", "source rocks volume, m³: least median largest 1 4 0.5 0.5 0.5", "Cells of the map below LeastReach 0.001 are left empty", "icosahedron 4 0.75 0.75 0.75",
+             "Talus stops rocks too soon", "12 rocks were still moving at EndTime (6 s)",
+             "Lengths is 1, 2, 3 m, but has no effect: only a box or an ellipsoid has lengths.",
+             "Fragmentation is off, without which these have no effect: FragmentSpread.",
              f"No rock reached line <b>road</b> 700290: of 12 rocks, of which {lost} were lost before it, the share that passes is "
              f"below {tables.number(100.0 * most_of_none(12, lost) / 12.0)} % with 95 % confidence"):
     assert word in text, word
@@ -306,6 +309,8 @@ refused("the study is not finished", "results.json")
 refused("is not JSON", "manifest.json", lambda data: data[:100])
 refused('"files" is 3, it must be an object', "manifest.json", lambda data: json.dumps(
     {**json.loads(data), "files": 3}).encode())
+refused('"notes" is 3, it must be a list of texts', "manifest.json", lambda data: json.dumps(
+    {**json.loads(data), "notes": 3}).encode())
 refused("summary.csv: there is no column RunOut", "summary.csv", replaced("RunOut", "RunOff"))
 refused("summary.csv: row 2 has", "summary.csv", lambda data: data.replace(b",", b";").replace(b";", b",", 39))
 refused("summary.csv: column Iteration has \"x\"", "summary.csv", replaced("\n1,0,0,", "\n1,0,x,"))

@@ -45,7 +45,7 @@ write_text("trees.csv", "x,y,diameter,height\n" + "\n".join(
 study = {
     "terrain": {"FileName": "incline.asc", "RoughnessDeviation": 0.2, "BarrierFile": "held.csv", "EmbankmentFile": "dams.csv",
                 "TreeFile": "trees.csv"},
-    "rocks": {"FileName": "sources.csv"},
+    "rocks": {"FileName": "sources.csv", "Lengths": [1.0, 2.0, 3.0]},
     "simulation": {"EndTime": 8.5, "TrajectoryOutput": "Thinned"},
     "map": {"CellSize": 5.0, "AnnualFrequency": 0.5, "EnergyThresholds": [10.0, 100.0]},
     "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0, "AnnualFrequency": 0.5, "TrajectoryFactor": 1.1},
@@ -87,8 +87,14 @@ def results_of(folder):
     return there
 
 
+def notes_of(folder):
+    with open(os.path.join(folder, "manifest.json"), encoding="utf-8") as file:
+        return json.load(file)["notes"]
+
+
 def expect_same(folder, what):
     there = results_of(folder)
+    assert notes_of(folder) == notes_of("results-calm"), f"{what}: {notes_of(folder)}"
     assert set(there) == set(calm), f"{what}: {sorted(set(there) ^ set(calm))}"
     assert there == calm, f"{what} makes other files: {[n for n in calm if there[n] != calm[n]]}"
 
@@ -104,6 +110,12 @@ assert sorted(set(calm) - set(for_gis(calm))) == sorted(
     [f"chunk-{k:05d}{kind}" for k in range(6)
      for kind in (".npz", ".vtp", ".passages", "-crossings.vtp", "-structures.npz")] +
     ["manifest.json", "results.json"] + RESULTS), sorted(calm)
+# All notes: of the slope, the rocks, the run and the map, each once; none of the look at the inputs.
+notes = notes_of("results-calm")
+for word in ("ground is bare rock", "Lengths is 1, 2, 3 m, but has no effect: only a box or an ellipsoid has lengths",
+             "of 33 rocks were still moving at EndTime (8.5 s)", "of 33 rocks went over a barrier"):
+    assert sum(word in note for note in notes) == 1, (word, notes)
+assert len(set(notes)) == len(notes) and not any("(0.005 s)" in note or " of 6 rocks" in note for note in notes), notes
 styled = [name[:-4] for name in RESULTS if name.endswith(".csv")]
 assert {name for name in for_gis(calm) if not name.startswith("hazard")} == {
     "crossings.prj", *(name + end for name in styled for end in (".csvt", ".qml"))}, for_gis(calm)
@@ -148,6 +160,7 @@ write_study("one.json", chunk=11, trajectories=False)
 code, said = run("results-one", "one.json")
 assert code == 0, said
 one = files_of("results-one")
+assert sorted(notes_of("results-one")) == sorted(notes), notes_of("results-one")
 assert "chunk-00000.vtp" not in one and len(one) == 4 + 2 + len(RESULTS) + len(for_gis(calm)), sorted(one)
 for name in RESULTS + for_gis(calm):
     assert one[name] == calm[name], f"{name} depends on the chunks"

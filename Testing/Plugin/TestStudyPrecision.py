@@ -120,6 +120,13 @@ assert moving == [str(sum(row["FateCode"] == "2" for row in rows))] != ["0"], te
 # Of each chunk as of one run; that nothing moved is so where no chunk moved anything.
 notes = [["2 of 9 rocks fell", "None of 9 rocks moved: x"], [], ["1 of 9 rocks fell"]]
 assert combine.notes_of_all(notes, 27) == ["3 of 27 rocks fell"], combine.notes_of_all(notes, 27)
+pushed = "PushRocksApart moved up to {} of 9 blocks, by up to {} m, in {} of 2 iterations"
+notes = [[pushed.format(3, 0.5, 1)], [pushed.format(2, 1.25, 2)], []]
+assert combine.notes_of_all(notes, 54) == ["PushRocksApart moved up to 3 of 9 blocks, by up to 1.25 m, in 3 iterations"]
+# Of the look at the inputs what is so of the whole study.
+assert combine.input_notes(["2 of 9 rocks were still moving", "A is 1, but has no effect: why", pushed.format(1, 2, 2),
+                            "All 2 iterations are alike: nothing"], 50) == \
+    ["A is 1, but has no effect: why", "All 50 iterations are alike: nothing"]
 assert combine.notes_of_all([["None of 9 rocks moved: x"]] * 2, 18) == ["None of 18 rocks moved: x"]
 
 # So are those that left the DEM: of a hundred that go 1 to 100 m ten go farther.
