@@ -465,6 +465,22 @@ TEST_F(TestUnusedInputs, PropertiesOfGround)
     { "The file has no CRS; its coordinates were taken as metres.",
       "RelaxFlats is off, but has no effect: FileName is a raster, not contour lines",
       "ElevationField is \"height\", but has no effect: FileName is a raster, not contour lines" });
+  vtkNew<Slope> contours;
+  contours->SetFileName(this
+                          ->WriteFile("contours.csv",
+                            "WKT,elev\n\"LINESTRING(0 0,100 0)\",30\n\"LINESTRING(0 50,100 "
+                            "50)\",20\n\"LINESTRING(0 100,100 100)\",10\n")
+                          .c_str());
+  contours->SetBand(2);
+  contours->SetRelaxFlats(0);
+  contours->SetElevationField("elev");
+  contours->Update();
+  std::vector<std::string> idle = rockfall::filters::notesOf(contours->GetOutput()->GetFieldData());
+  std::erase_if(
+    idle, [](const std::string& note) { return note.find("no effect") == std::string::npos; });
+  EXPECT_EQ(idle,
+    std::vector<std::string>(
+      { "Band is 2, but has no effect: FileName has contour lines, not bands" }));
   // What a preset replaces; a window fills its numbers into the panel.
   for (int preset = 1; preset <= 7; ++preset)
   {
