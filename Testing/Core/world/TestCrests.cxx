@@ -73,33 +73,31 @@ Pile chase(int seed, double width)
 
 TEST(Crests, ThinRocksThatOthersDriveDoNotSinkIn)
 {
-  for (const double width : { 0.2, 0.5 })
+  constexpr double width = 0.2; // m
+  const Block wall(makeBox({ width, kLength, kHeight + 2.0 }), 2500.0, 1e10, 0.25);
+  BlockState standing;
+  standing.position = Vec3(kEnd.x(), kEnd.y() - 0.5 * kLength, 0.5 * kHeight - 1.0);
+  int met = 0;
+  for (int seed = 0; seed < 60; ++seed)
   {
-    const Block wall(makeBox({ width, kLength, kHeight + 2.0 }), 2500.0, 1e10, 0.25);
-    BlockState standing;
-    standing.position = Vec3(kEnd.x(), kEnd.y() - 0.5 * kLength, 0.5 * kHeight - 1.0);
-    int met = 0;
-    for (int seed = 0; seed < 60; ++seed)
+    Pile pile = chase(seed, width);
+    pile.make();
+    const Rock& thin = pile.rocks.front();
+    const Block block(thin.shape, thin.density, thin.youngModulus, thin.poissonRatio);
+    double deepest = 0.0;
+    const std::vector<Trajectory> runs = pile.fall->run();
+    for (const Sample& s : runs.front().samples)
     {
-      Pile pile = chase(seed, width);
-      pile.make();
-      const Rock& thin = pile.rocks.front();
-      const Block block(thin.shape, thin.density, thin.youngModulus, thin.poissonRatio);
-      double deepest = 0.0;
-      const std::vector<Trajectory> runs = pile.fall->run();
-      for (const Sample& s : runs.front().samples)
-      {
-        BlockState state;
-        state.position = s.position;
-        state.orientation = s.orientation;
-        deepest = std::max(deepest,
-          deepestOverlap(
-            2, [&](int i) -> const Block& { return i == 0 ? block : wall; },
-            [&](int i) { return i == 0 ? state : standing; }));
-      }
-      met += deepest > 0.0;
-      EXPECT_LT(deepest, 0.05 * block.radius()) << seed << ", wall of " << width << " m";
+      BlockState state;
+      state.position = s.position;
+      state.orientation = s.orientation;
+      deepest = std::max(deepest,
+        deepestOverlap(
+          2, [&](int i) -> const Block& { return i == 0 ? block : wall; },
+          [&](int i) { return i == 0 ? state : standing; }));
     }
-    EXPECT_GT(met, 10);
+    met += deepest > 0.0;
+    EXPECT_LT(deepest, 0.05 * block.radius()) << seed;
   }
+  EXPECT_GT(met, 10);
 }
