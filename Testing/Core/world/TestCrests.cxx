@@ -12,8 +12,8 @@ using namespace rockfall::testing;
 namespace
 {
 
-constexpr double kHeight = 1.2, kLength = 20.0; // m, of the wall
-const Eigen::Vector2d kEnd(100.0, 100.0);       // of its axis, which comes from −y
+constexpr double kWallHeight = 1.2, kWallLength = 20.0; // m, of the wall
+const Eigen::Vector2d kWallEnd(100.0, 100.0);           // of its axis, which comes from −y
 
 Polyhedron thinRock(int k, double length)
 {
@@ -37,8 +37,8 @@ Pile chase(int seed, double width)
   pile.ground = makeSlope(
     41, 5.0, [](double, double) { return 0.0; }, material(0.4 * u(random), 5.0));
   Embankment wall;
-  wall.points = { kEnd - Eigen::Vector2d(0.0, kLength), kEnd };
-  wall.height = kHeight;
+  wall.points = { kWallEnd - Eigen::Vector2d(0.0, kWallLength), kWallEnd };
+  wall.height = kWallHeight;
   wall.crestWidth = width;
   wall.mountainSlope = wall.valleySlope = 0.0;
   Structures structures;
@@ -50,7 +50,7 @@ Pile chase(int seed, double width)
   pile.parameters.rockRestitution = 0.5 * u(random);
   const double azimuth = 6.283 * u(random), speed = 6.0 + 10.0 * u(random);
   const Vec3 out(std::cos(azimuth), std::sin(azimuth), 0.0);
-  const Vec3 aim(kEnd.x() + u(random) - 0.5, kEnd.y() - u(random), 0.0);
+  const Vec3 aim(kWallEnd.x() + u(random) - 0.5, kWallEnd.y() - u(random), 0.0);
   double away = 1.2;
   for (int k = 0; k < 4; ++k)
   {
@@ -61,7 +61,7 @@ Pile chase(int seed, double width)
       Quat(u(random) - 0.5, u(random) - 0.5, u(random) - 0.5, u(random) - 0.5).normalized();
     const double r = rock.shape.radius();
     away += r + 0.02;
-    rock.position = aim + away * out + (1.02 * r + kHeight * u(random)) * Vec3::UnitZ();
+    rock.position = aim + away * out + (1.02 * r + kWallHeight * u(random)) * Vec3::UnitZ();
     away += r;
     rock.velocity = -(speed * (1.0 + 0.25 * k)) * out;
     pile.rocks.push_back(rock);
@@ -74,9 +74,9 @@ Pile chase(int seed, double width)
 TEST(Crests, ThinRocksThatOthersDriveDoNotSinkIn)
 {
   constexpr double width = 0.2; // m
-  const Block wall(makeBox({ width, kLength, kHeight + 2.0 }), 2500.0, 1e10, 0.25);
+  const Block wall(makeBox({ width, kWallLength, kWallHeight + 2.0 }), 2500.0, 1e10, 0.25);
   BlockState standing;
-  standing.position = Vec3(kEnd.x(), kEnd.y() - 0.5 * kLength, 0.5 * kHeight - 1.0);
+  standing.position = Vec3(kWallEnd.x(), kWallEnd.y() - 0.5 * kWallLength, 0.5 * kWallHeight - 1.0);
   int met = 0;
   for (int seed = 0; seed < 60; ++seed)
   {
