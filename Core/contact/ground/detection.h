@@ -30,7 +30,6 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
 /// force at the overlap it is found with and resists any further one, unless it has a contact
 /// already. `from`: where the middle of the rock was when the step began, as it may have gone through
 /// an obstacle within it; if it has gone a way, edges that came across a ridge on it get one, too.
-
 void guardPenetration(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double allowed, const CameFrom& from,
   std::vector<Contact>& contacts);

@@ -176,6 +176,38 @@ bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, i
   return true;
 }
 
+Contact vertexFaceAt(
+  const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double distance)
+{
+  const SurfacePatch::Triangle& t = patch.triangles[triangle];
+  Contact c;
+  c.kind = ContactKind::VertexFace;
+  c.rockFeature = vertex;
+  c.patchFeature = triangle;
+  c.surfaceFeature = t.key;
+  c.cfe = t.cfe;
+  c.normal = t.normal;
+  c.point = rock.vertices()[vertex];
+  c.distance = distance;
+  return c;
+}
+
+Contact faceVertexAt(
+  const PlacedBlock& rock, int face, const SurfacePatch& patch, int node, double distance)
+{
+  const SurfacePatch::Node& q = patch.nodes[node];
+  Contact c;
+  c.kind = ContactKind::FaceVertex;
+  c.rockFeature = face;
+  c.patchFeature = node;
+  c.surfaceFeature = q.key;
+  c.cfe = q.cfe;
+  c.normal = -rock.normal(face);
+  c.point = q.position;
+  c.distance = distance;
+  return c;
+}
+
 std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const SurfacePatch& patch,
   int triangle, double reach, int from, double turn)
 {
@@ -193,16 +225,7 @@ std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const Sur
   {
     return std::nullopt;
   }
-  Contact c;
-  c.kind = ContactKind::VertexFace;
-  c.rockFeature = vertex;
-  c.patchFeature = triangle;
-  c.surfaceFeature = t.key;
-  c.cfe = t.cfe;
-  c.normal = t.normal;
-  c.point = p;
-  c.distance = distance;
-  return c;
+  return vertexFaceAt(rock, vertex, patch, triangle, distance);
 }
 
 bool insideRockFace(const PlacedBlock& rock, int face, const Vec3& world, double tolerance)
@@ -238,21 +261,11 @@ std::optional<Contact> faceVertex(
   {
     return std::nullopt;
   }
-  const Vec3 normal = -rock.normal(face);
-  if (!inPeakCone(patch, node, normal, kConeSlack))
+  if (!inPeakCone(patch, node, -rock.normal(face), kConeSlack))
   {
     return std::nullopt;
   }
-  Contact c;
-  c.kind = ContactKind::FaceVertex;
-  c.rockFeature = face;
-  c.patchFeature = node;
-  c.surfaceFeature = q.key;
-  c.cfe = q.cfe;
-  c.normal = normal;
-  c.point = q.position;
-  c.distance = distance;
-  return c;
+  return faceVertexAt(rock, face, patch, node, distance);
 }
 
 Vec3 betweenSegments(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w)

@@ -35,6 +35,13 @@ bool cameThrough(
 /// it.
 bool cameAcross(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, double distance);
 
+/// Contacts of a vertex with a CFE and of a face with a node, `distance` (m) apart, whether they may
+/// be or not.
+Contact vertexFaceAt(
+  const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double distance);
+Contact faceVertexAt(
+  const PlacedBlock& rock, int face, const SurfacePatch& patch, int node, double distance);
+
 /// Entrance of a rock vertex into a CFE, if the pair is valid or becomes so within `turn` (rad) of
 /// the rock; `from` as for projectsInside.
 std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const SurfacePatch& patch,

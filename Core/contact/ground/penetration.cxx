@@ -75,36 +75,6 @@ double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
 namespace
 {
 
-Contact contactOf(const PlacedBlock& rock, int vertex, const SurfacePatch::Triangle& t,
-  int triangle, double distance)
-{
-  Contact c;
-  c.kind = ContactKind::VertexFace;
-  c.rockFeature = vertex;
-  c.patchFeature = triangle;
-  c.surfaceFeature = t.key;
-  c.cfe = t.cfe;
-  c.normal = t.normal;
-  c.point = rock.vertices()[vertex];
-  c.distance = distance;
-  return c;
-}
-
-Contact contactOf(
-  const PlacedBlock& rock, int face, const SurfacePatch::Node& q, int node, double distance)
-{
-  Contact c;
-  c.kind = ContactKind::FaceVertex;
-  c.rockFeature = face;
-  c.patchFeature = node;
-  c.surfaceFeature = q.key;
-  c.cfe = q.cfe;
-  c.normal = -rock.normal(face);
-  c.point = q.position;
-  c.distance = distance;
-  return c;
-}
-
 /// visit(contact) of each candidate that is too deep, until it returns false. Returns whether it
 /// never did.
 template <class Visit>
@@ -131,7 +101,7 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
                                          : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&
             inVertexCone(rock, pair.rock, t.normal, kConeSlack)) &&
       cameThrough(from.position, patch, pair.patch, p, distance) &&
-      !visit(contactOf(rock, pair.rock, t, pair.patch, distance)))
+      !visit(vertexFaceAt(rock, pair.rock, patch, pair.patch, distance)))
     {
       return false;
     }
@@ -147,7 +117,7 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
     const double distance = rock.faceDistance(face, q.position);
     // A face that looks up is no way out of the ground.
     if (distance < -allowed && (node >= patch.slopeNodes || rock.normal(face).z() < 0.0) &&
-      !visit(contactOf(rock, face, q, node, distance)))
+      !visit(faceVertexAt(rock, face, patch, node, distance)))
     {
       return false;
     }
