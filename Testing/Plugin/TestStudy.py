@@ -113,7 +113,9 @@ assert sorted(set(calm) - set(for_gis(calm))) == sorted(
 # All notes: of the slope, the rocks, the run and the map, each once; none of the look at the inputs.
 notes = notes_of("results-calm")
 for word in ("ground is bare rock", "Lengths is 1, 2, 3 m, but has no effect: only a box or an ellipsoid has lengths",
-             "of 33 rocks were still moving at EndTime (8.5 s)", "of 33 rocks went over a barrier"):
+             "of 33 rocks were still moving at EndTime (8.5 s): they count",
+             "of 33 rocks were still moving at EndTime (8.5 s) before they passed a line: they count",
+             "of 33 rocks went over a barrier"):
     assert sum(word in note for note in notes) == 1, (word, notes)
 assert len(set(notes)) == len(notes) and not any("(0.005 s)" in note or " of 6 rocks" in note for note in notes), notes
 styled = [name[:-4] for name in RESULTS if name.endswith(".csv")]
