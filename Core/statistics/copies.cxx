@@ -12,8 +12,7 @@ namespace rockfall
 RockRuns::RockRuns(std::vector<std::pair<int, std::int64_t>> rocks)
 {
   std::ranges::sort(rocks);
-  const auto duplicates = std::ranges::unique(rocks);
-  rocks.erase(duplicates.begin(), duplicates.end());
+  rocks.erase(std::unique(rocks.begin(), rocks.end()), rocks.end());
   const auto isOfOneNumber = [](const auto& a, const auto& b) { return a.first == b.first; };
   if (std::ranges::adjacent_find(rocks, isOfOneNumber) == rocks.end())
   {

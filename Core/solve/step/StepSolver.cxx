@@ -146,7 +146,7 @@ void BlockStep<N>::levers(
   const Vec3 u = d.template head<3>();
   const Mat3 turn = rotation.toRotationMatrix();
   /// Place, after strain, of a material point x that was at y.
-  const auto strained = [&d](const Vec3& y, const Vec3& x) -> Vec3
+  const auto strained = [&](const Vec3& y, const Vec3& x) -> Vec3
   {
     if constexpr (N == 12)
     {
