@@ -168,6 +168,20 @@ struct alignas(64) RockPair
   Impact impact;
   double lastingLoss = 0.0; ///< Taken by contacts outside of impacts, springs included, J.
   double touchedAt = -std::numeric_limits<double>::infinity(); ///< End of the last such step, s.
+
+  /// These are its contacts, in as much memory as they need: most who are near each other touch
+  /// nothing.
+  void keep(std::span<const Contact> all)
+  {
+    if (all.empty())
+    {
+      std::vector<Contact>().swap(contacts);
+    }
+    else
+    {
+      contacts.assign(all.begin(), all.end());
+    }
+  }
 };
 
 /// How a rock moves past another.

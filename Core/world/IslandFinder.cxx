@@ -101,7 +101,7 @@ void IslandFinder::settle()
     {
       // A rock that is awake and not linked moves by itself, away from where the axis was found.
       n.pair->seen = n.pair->touched = n.holds = false;
-      n.pair->contacts.clear();
+      n.pair->keep({});
     }
   };
   linked_.resize(std::max(near_.size(), linked_.size()));

@@ -64,7 +64,7 @@ void IslandStepper::fly(double duration)
     });
   for (RockPair* pair : island_.pairs)
   {
-    pair->contacts.clear();
+    pair->keep({});
     pair->touched = pair->seen = false;
     finishPairImpact(world_, *pair);
   }

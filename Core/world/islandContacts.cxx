@@ -91,7 +91,7 @@ void IslandStepper::gatherOfPair(std::size_t p, double h)
   const IslandWork::Side& b = work_.sides[std::size_t(pair.second)];
   if (a.done || b.done)
   {
-    pair.contacts.clear();
+    pair.keep({});
     pair.axis.distance = std::max(0.0, pair.axis.distance);
     return;
   }

@@ -180,24 +180,23 @@ void Renewal::replaceAll(RockPair& pair)
   {
     sieve.reset(); // what springs are handed to may be any
   }
-  thread_local std::vector<Contact> before;
-  before.swap(pair.contacts);
-  pair.contacts.clear();
+  thread_local std::vector<Contact> renewed;
+  renewed.clear();
   for (std::size_t i = 0; i < touches; ++i)
   {
     const Match& match = matches[i];
     if (match.old >= 0)
     {
-      Contact& c = pair.contacts.emplace_back(before[std::size_t(match.old)]);
+      Contact& c = renewed.emplace_back(pair.contacts[std::size_t(match.old)]);
       goOn(found[i], second, pair.axis, match, turned, c);
       if (sieve && !mayClose(c, *sieve))
       {
-        pair.contacts.pop_back();
+        renewed.pop_back();
       }
     }
     else if (!sieve || !(std::max(0.0, found[i].distance) > sieve->at(found[i].point)))
     {
-      Contact& c = pair.contacts.emplace_back();
+      Contact& c = renewed.emplace_back();
       putTouch(found[i], second, pair.axis, c);
       // Found overlapping: finding it makes no energy.
       c.offset = std::min(0.0, c.distance);
@@ -205,12 +204,13 @@ void Renewal::replaceAll(RockPair& pair)
   }
   if (hands)
   {
-    handOverAll({ taken, olds }, before, pair.contacts);
+    handOverAll({ taken, olds }, pair.contacts, renewed);
     if (all)
     {
-      std::erase_if(pair.contacts, [&](const Contact& c) { return !mayClose(c, *all); });
+      std::erase_if(renewed, [&](const Contact& c) { return !mayClose(c, *all); });
     }
   }
+  pair.keep(renewed);
 }
 
 } // namespace
@@ -235,7 +235,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     // A spring that is still compressed, as it was found or handed over so, opens by itself.
     if (!carries)
     {
-      pair.contacts.clear();
+      pair.keep({});
       pair.touched = false;
     }
     return;
