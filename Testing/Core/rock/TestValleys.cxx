@@ -193,6 +193,38 @@ TEST(Valleys, CubesDoNotFallThroughABend)
   }
 }
 
+TEST(Valleys, ALongStepDoesNotPassARidgeBesideIt)
+{
+  // A brick slides down one side of a hollow; in the middle of a step its edge comes to a ridge of
+  // the other side that begins half a millimetre beside it, where the two are no contact yet.
+  constexpr double cell = 0.308,
+                   z[7][7] = { { -1.28, -0.965, -0.314, -0.787, -0.853, -0.609, 0.167 },
+                     { -0.886, 0.161, -0.732, 0.342, -0.032, 0.522, 0.188 },
+                     { -0.563, -0.511, -0.295, 0.111, -0.774, -0.737, 0.319 },
+                     { -1.435, -0.151, 0.018, -0.882, -0.683, 0.476, -0.09 },
+                     { -0.899, 0.155, 0.022, -0.464, 0.005, 0.184, 0.122 },
+                     { -1.167, -1.103, -0.507, 0.223, -0.037, -0.619, 0.453 },
+                     { 0.019, -0.122, -0.765, -0.581, 0.199, -0.204, 0.473 } };
+  Pile pile;
+  pile.ground = makeSlope(
+    7, cell,
+    [&](double x, double y) { return z[6 - std::lround(y / cell)][std::lround(x / cell)]; },
+    material(0.149, 49.1));
+  Rock rock;
+  rock.density = 732.0;
+  rock.shape = makeBox(Vec3(0.1872, 0.0623, 0.0803)).centred();
+  rock.orientation = Quat(-0.751094, -0.230615, -0.565111, 0.251644).normalized();
+  rock.position = Vec3(1.183286, 1.199760, -0.556397);
+  rock.velocity = Vec3(0.455893, -0.383089, -2.287682);
+  rock.angularVelocity = Vec3(0.443999, -0.148480, -0.720099);
+  pile.rocks = { rock };
+  pile.parameters.rigid = true;
+  pile.parameters.normalPenalty = 2.618e7;
+  pile.parameters.timeStep = 0.0027378;
+  pile.parameters.endTime = 0.1;
+  EXPECT_LT(deepestUnderSlope(pile), 0.02);
+}
+
 TEST(Valleys, SoftRocksKeepTheirEnergyBetweenTouches)
 {
   // Needles that rattle: they strain at every touch, and fly shortly in between.

@@ -70,14 +70,3 @@ TEST(RandomScene, AStoneUnderARockHandsOnWhatItWasGiven)
   EXPECT_EQ(outcome.gained, 0.0);
   EXPECT_LE(std::abs(outcome.made), 0.01 * outcome.released);
 }
-
-// Stones that slide down one side of a valley come to a ridge of the other in the middle of a step, which
-// begins half a millimetre beside it: where the two are no contact yet.
-TEST(RandomScene, ALongStepDoesNotPassARidgeBesideIt)
-{
-  for (const std::uint64_t seed : { 2074, 2770 })
-  {
-    SCOPED_TRACE(seed);
-    expectSound(runScene(randomScene(seed, 20, 2.0), 240.0));
-  }
-}
