@@ -234,7 +234,7 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   {
     notes.push_back(files.layer + ": the band's " + scale.text() + " were applied to its classes.");
   }
-  char** categories = source->GetRasterBand(1)->GetCategoryNames();
+  const char* const* categories = source->GetRasterBand(1)->GetCategoryNames();
 
   std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
   std::unordered_map<double, int> known;

@@ -50,7 +50,7 @@ bool isChanged(const CPLXMLNode* source)
 std::vector<Source> sourcesOf(GDALDataset& dataset, int band)
 {
   std::vector<Source> sources;
-  char** const xml = dataset.GetMetadata("xml:VRT");
+  const char* const* const xml = dataset.GetMetadata("xml:VRT");
   if (!isOfDriver(dataset, "VRT") || !xml || !*xml)
   {
     return sources;
