@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -70,7 +71,7 @@ TEST(BlockSlope, GivesTheVelocityHistoryOfCfes)
 
 TEST(BlockSlope, CostsMoreTheLargerTheSlope)
 {
-  // Time of a whole run over the number of its steps: reported, never decides.
+  // Time of a whole run over the number of its steps, the quickest of five: reported, never decides.
   std::vector<double> cfes, onBlocks, onCfes;
   for (int nodes : { 2, 3, 5, 9 })
   {
@@ -81,25 +82,33 @@ TEST(BlockSlope, CostsMoreTheLargerTheSlope)
     p.endTime = 0.5;
     const Terrain plane =
       rockfall::testing::makePlane(nodes, 60.0, radians(30.0), 0.0, surface(0.8, 10.0));
-    const BlockSlopeRun run = simulateOnBlockSlope(plane, rock, p, SlopeModel::ArtificialBlocks);
-    const auto begin = std::chrono::steady_clock::now();
-    const Trajectory t = rockfall::testing::simulate(plane, rock, p);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    int unknowns = 0;
+    double stepOnBlocks = 1e300, stepOnCfes = 1e300; // s
+    for (int round = 0; round < 5; ++round)
+    {
+      const BlockSlopeRun run = simulateOnBlockSlope(plane, rock, p, SlopeModel::ArtificialBlocks);
+      const auto begin = std::chrono::steady_clock::now();
+      const Trajectory t = rockfall::testing::simulate(plane, rock, p);
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+      unknowns = run.unknowns;
+      stepOnBlocks = std::min(stepOnBlocks, run.secondsPerStep());
+      stepOnCfes = std::min(
+        stepOnCfes, took.count() / double(std::max<std::int64_t>(1, t.summary.contactSteps)));
+    }
     cfes.push_back(double(plane.cfeCapacity()));
-    onBlocks.push_back(1e6 * run.secondsPerStep());
-    onCfes.push_back(
-      1e6 * took.count() / double(std::max<std::int64_t>(1, t.summary.contactSteps)));
+    onBlocks.push_back(1e6 * stepOnBlocks);
+    onCfes.push_back(1e6 * stepOnCfes);
     report({ "Slope as blocks", text(cfes.back()) + " CFEs: unknowns of a step, slope as blocks",
              "", "12 on CFEs" },
-      run.unknowns);
+      unknowns);
     report({ "Slope as blocks", text(cfes.back()) + " CFEs: time per step, slope as blocks", "µs",
-             "never decides" },
+             "quickest of five; never decides" },
       onBlocks.back());
     report({ "Slope as blocks", text(cfes.back()) + " CFEs: time per step, slope as CFEs", "µs",
-             "never decides" },
+             "quickest of five; never decides" },
       onCfes.back());
     // Two CFEs a cell, a block under each; as CFEs the slope adds nothing to the rock's 12.
-    EXPECT_EQ(run.unknowns, 12 * (2 * (nodes - 1) * (nodes - 1) + 1));
+    EXPECT_EQ(unknowns, 12 * (2 * (nodes - 1) * (nodes - 1) + 1));
   }
   addCurve("block-cost", "slope as blocks", cfes, onBlocks);
   addCurve("block-cost", "slope as CFEs", cfes, onCfes);
